@@ -4,9 +4,13 @@
 //! contents and compressed, to `OUT_DIR/client`. `OUT_DIR/client.rs` is the table of these files that `src/net/assets.rs` includes. A copy of
 //! the files before that stays in `target/PROFILE/client/page`.
 //!
+//! The page of charts is put together from `charts/page` and the measured data in `charts/results`.
+//!
 //! `PRAIRIE_CLIENT=skip` builds no client and embeds a placeholder page; `PRAIRIE_CLIENT=FOLDER` embeds a client built before, such as that
 //! copy. A relative folder starts at the workspace. The server of docs.rs, which has no wasm target, gets the placeholder.
 
+#[path = "build/charts.rs"]
+mod charts;
 #[path = "build/commit.rs"]
 mod commit;
 #[path = "build/compile.rs"]
@@ -15,6 +19,8 @@ mod compile;
 mod embed;
 #[path = "build/fingerprint.rs"]
 mod fingerprint;
+#[path = "build/inline.rs"]
+mod inline;
 #[path = "build/prebuilt.rs"]
 mod prebuilt;
 
@@ -56,6 +62,7 @@ fn build() -> Result<()> {
             prebuilt::copy(&folder, &page)?;
         }
     }
+    charts::write(&server.join("charts"), &page)?;
     embed::write_table(&embed::read(&page)?, &client, &out.join("client.rs"), compile::is_dist(&target_dir))
 }
 

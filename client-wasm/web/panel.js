@@ -2,6 +2,7 @@
 
 import { keep, link, parameter } from "./address.js";
 import { byId, element, marked, write } from "./elements.js";
+import { showPlan } from "./plan.js";
 import { showRace } from "./race.js";
 
 const UPDATE_MS = 250;
@@ -10,7 +11,7 @@ const NOTICE_MS = 5_000;
 
 const LABELS = {
   auto: "Automatic", land: "Ground only", cut: "Alpha test", coverage: "Alpha to coverage", precomputed: "Precomputed orders", weighted: "Weighted blended",
-  unculled: "No culling", raised: "Wind raised with distance", grids: "Map of the grids", shadowed: "Shadows of grass",
+  unculled: "No culling", unoccluded: "No culling behind solids", occluded: "Always culled behind solids", raised: "Wind raised with distance", grids: "Map of the grids", unshadowed: "No shadows of grass",
 };
 
 // Displayed name of a choice.
@@ -32,6 +33,7 @@ export class Panel {
     byId("quality").value = JSON.parse(client.state()).chosen_quality;
     byId("options").open = ["order", "far", "wind", "show", "compare"].some((key) => parameter(key) !== null);
     this.listen();
+    showPlan();
     setInterval(() => this.update(JSON.parse(client.state())), UPDATE_MS);
   }
 
@@ -139,7 +141,7 @@ export class Panel {
   toggleShadows() {
     const casts = !JSON.parse(this.client.state()).shadows;
     this.client.cast_grass_shadows(casts);
-    keep({ shadows: casts ? "on" : null });
+    keep({ shadows: casts ? null : "off" });
     this.update(JSON.parse(this.client.state()));
   }
 

@@ -127,7 +127,7 @@ async function begin() {
   client.set_options(parameter("order") ?? "", parameter("far") ?? "");
   client.raise_far_wind(parameter("wind") === "raised");
   client.show_grids(parameter("show") === "grids");
-  client.cast_grass_shadows(parameter("shadows") === "on");
+  client.cast_grass_shadows(parameter("shadows") !== "off");
   if (parameter("hour")) client.set_hour(Number(parameter("hour")));
   const { state } = window.prairie;
   const capture = new Capture(client, byId("view"), {

@@ -8,6 +8,9 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 /// The file that keeps its name: browsers ask for it first, and it names all others.
 const ROOT: &str = "index.html";
 
+/// The page of charts, which people open by its name. Everything that it needs is in it.
+const CHARTS: &str = "charts.html";
+
 /// Extensions of the files that refer to others.
 const TEXTS: [&str; 5] = ["css", "html", "js", "svg", "webmanifest"];
 
@@ -23,7 +26,7 @@ const LOADS: [&str; 7] = ["from ", "import ", "import(", "fetch(", "src=", "href
 /// Files by name.
 pub(crate) type Files = BTreeMap<String, Vec<u8>>;
 
-/// The same files with a hash of their contents in their names and in the references to them. `index.html` keeps its name.
+/// The same files with a hash of their contents in their names and in the references to them. `index.html` and `charts.html` keep their names.
 ///
 /// # Errors
 /// When a file refers to one that does not exist, is not UTF-8 although its extension says that it is text, or refers to itself through others.
@@ -62,7 +65,7 @@ fn finish<'a>(
     }
     open.push(name);
     let mut bytes = files[name].clone();
-    if TEXTS.contains(&extension(name)) {
+    if TEXTS.contains(&extension(name)) && name != CHARTS {
         let mut text = String::from_utf8(bytes).map_err(|_| format!("client-wasm/web/{name}: not UTF-8"))?;
         for (reference, is_loaded) in references(&text) {
             let target = match files.get_key_value(reference.trim_start_matches("./")) {
@@ -80,7 +83,7 @@ fn finish<'a>(
     }
     open.pop();
     let new = match name.rsplit_once('.') {
-        Some((stem, extension)) if name != ROOT => format!("{stem}.{}.{extension}", hash(&bytes)),
+        Some((stem, extension)) if name != ROOT && name != CHARTS => format!("{stem}.{}.{extension}", hash(&bytes)),
         _ => name.to_owned(),
     };
     done.insert(new.clone(), bytes);

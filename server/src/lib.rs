@@ -10,10 +10,13 @@
 //! `cargo doc --workspace --no-deps --open` documents all of them; this page is the way in.
 //! - [`prairie_core`]: scenes, terrain, the bend field of grass, plants, light and the wire format, shared by server and client.
 //! - [`prairie_wind`]: the wind solver.
+//! - [prairie_charts](../prairie_charts/index.html): methods measured on problems with known solutions.
 //! - [prairie_client](../prairie_client/index.html): the mirror of a server's world, and the renderer.
-//! - [tests](../tests/index.html): reference solutions, charts and pictures.
+//! - [tests](../tests/index.html): tests, comparisons and pictures.
 
 pub mod bend;
+#[cfg(feature = "charts")]
+pub mod charts;
 mod checksum;
 mod config;
 pub mod escaped;
@@ -25,6 +28,7 @@ mod log_limit;
 pub mod metrics;
 pub mod net;
 pub mod objects;
+pub mod plan;
 pub mod plants;
 pub mod race;
 mod reload;

@@ -102,6 +102,7 @@ pub(crate) async fn run_with_menu(
         attendance: runner.attendance(),
         proofs,
         scene_name: config.scene.name.clone(),
+        explanation: Arc::clone(&config.scene.explanation),
         scene_menu,
         scene: wire::encode(&config.scene.message()).into(),
         limits: config.limits,

@@ -149,6 +149,7 @@ fn lawn() -> LoadedScene {
         drawings: Default::default(),
         models: Vec::new(),
         files: Vec::new(),
+        explanation: Default::default(),
     }
 }
 

@@ -2,8 +2,9 @@
 
 use prairie_core::bend::{Edges, GroundContact, Scheme, Seams};
 use prairie_core::scene::{
-    BladeIntegrator, BladeShape, ComponentKind, FlowerShape, LagWay, PlantCover, PrimitiveIntensity, PrimitiveKind, ShellExtrusion,
-    TreeShape, VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    BladeIntegrator, BladeShape, ComponentKind, FlowerShape, LagWay, ObjectContact, PlantCover, PrimitiveIntensity, PrimitiveKind,
+    ShellExtrusion, TreeShape, VehicleKind, WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling,
+    WindTime,
 };
 use prairie_core::wire::{ClientMessage, ModelUse, PROTOCOL, Refusal, ServerMessage};
 use serde_json::{Value, json};
@@ -21,7 +22,10 @@ fn generated() -> Value {
             $(tracer.trace_type::<$name>(&samples).expect(concat!(stringify!($name), " describes itself"));)+
         };
     }
-    trace!(BladeIntegrator, BladeShape, ComponentKind, Edges, FlowerShape, GroundContact, LagWay, PlantCover, PrimitiveIntensity);
+    trace!(
+        BladeIntegrator,
+        BladeShape, ComponentKind, Edges, FlowerShape, GroundContact, LagWay, ObjectContact, PlantCover, PrimitiveIntensity
+    );
     trace!(PrimitiveKind, Refusal, Scheme, Seams, ShellExtrusion, TreeShape, VehicleKind);
     trace!(WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime);
     trace!(ModelUse, ClientMessage, ServerMessage);

@@ -3,11 +3,11 @@
 //! First a table of medians, each also relative to low quality over bare terrain; then the same views under criterion.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use prairie::charts::still::{Still, frame_secs};
+use prairie::charts::views::View;
+use prairie::charts::worlds::{flat_meadow, on_foot};
 use prairie_client::render::{FarPlants, Gpu, OffscreenRenderer as Canvas, Quality, RenderOptions};
 use std::time::Duration;
-use tests::still::{Still, frame_secs};
-use tests::views::View;
-use tests::worlds::{flat_meadow, on_foot};
 
 const SIZES_PX: [[u32; 2]; 2] = [[640, 360], [960, 540]];
 const VIEW: &str = "walking-storm";

@@ -2,6 +2,7 @@
 //! awake, in one sub-step (two for objects faster than 50 m/s).
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use prairie::charts::worlds;
 use prairie::snapshot::PatchQuantiser;
 use prairie::world::{Camera, Command, World};
 use prairie_core::bend::{Bend, Field, Kinds, Scheme, Serial};
@@ -9,7 +10,6 @@ use prairie_core::grid::PatchLayout;
 use prairie_core::scene::{Grass, Patches, VehicleKind};
 use prairie_core::wire::Drive;
 use std::time::Instant;
-use tests::worlds;
 
 /// A busy world: `objects` vehicles that have driven about for 2 s.
 fn busy(objects: u32) -> World {

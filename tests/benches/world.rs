@@ -3,6 +3,7 @@
 //! An argument `rest`, `minute` or `cars` runs that part alone; `PRAIRIE_QUICK=1` takes a tenth of the time, for a quick look.
 
 use futures_util::{SinkExt, StreamExt};
+use prairie::charts::worlds;
 use prairie::objects::{Environment, Objects};
 use prairie::scenes;
 use prairie::snapshot::{Audience, PatchQuantiser};
@@ -15,7 +16,6 @@ use prairie_core::wire::{ClientMessage, SERVER_MESSAGE_LIMIT, ServerMessage, dec
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tests::prairie::Prairie;
-use tests::worlds;
 use tokio::net::TcpStream;
 use tokio_tungstenite::tungstenite::Message;
 

@@ -12,7 +12,7 @@ use tokio::time::{Instant, sleep};
 
 use crate::chromedriver::{Chromedriver, chromium};
 use crate::devtools::devtools;
-use crate::picture::Picture;
+use prairie::charts::image::Picture;
 
 /// Page size of a [`Browser`], width and height (CSS pixels, equal to the picture's pixels).
 pub const VIEW: (u32, u32) = (960, 540);

@@ -4,7 +4,7 @@ import package::constants::{LEAF_EXTINCTION, LEAST_SUN_SINE};
 import package::inputs::frame::frame;
 import package::inputs::grass_kinds::leafiness;
 import package::inputs::lamps::{lamp_ray, lamps_about};
-import package::inputs::sward_shade::{leaf_area_above, mapped_depth, SwardShade};
+import package::inputs::sward_shade::{height_below, leaf_area_above, mapped_depth, sun_on_seen, SwardShade};
 import package::land_and_sky::sky_light::ambient;
 import package::uniforms::Kind;
 
@@ -37,9 +37,24 @@ fn sun_in_plants(height_fraction: f32, plants_m: f32) -> f32 {
 // Fraction of sunlight at a relative height in grass, after the shade of all grass: from the map at a height `above` relative to that of the blades as they lean; beyond the
 // map from an even sward; without shadows of grass, by height alone.
 fn sun_in_grass(height_fraction: f32, kind: Kind, shade: SwardShade, above: f32) -> f32 {
-    let even = frame.shade_extinction * leafiness(kind) * leaf_area_above(height_fraction);
+    let even = even_depth(kind) * leaf_area_above(height_fraction);
     let through = mix(exp(-mix(even, mapped_depth(shade, above), shade.fraction)), 1.0, LEAF_TRANSMISSION);
     return mix(sun_in_plants(height_fraction, kind.height_m), through, frame.shade_strength);
+}
+
+// Optical depth of an even sward of a kind towards the sun.
+fn even_depth(kind: Kind) -> f32 {
+    return frame.shade_extinction * leafiness(kind);
+}
+
+// Mean fractions of sunlight on the upper and the lower half of what an eye sees of a sward, to which it has an optical depth; without shadows of grass, at these two heights.
+fn sun_on_sward(kind: Kind, shade: SwardShade, eye_depth: f32, heights: vec2<f32>) -> vec2<f32> {
+    // Fractions of the leaf area above the medians of both halves.
+    let above = min(vec2<f32>(log(4.0 / 3.0), log(4.0)) / eye_depth, vec2<f32>(1.0));
+    let mapped = vec2<f32>(mapped_depth(shade, height_below(above.x)), mapped_depth(shade, height_below(above.y))) / above;
+    let seen = sun_on_seen(eye_depth, mix(vec2<f32>(even_depth(kind)), mapped, shade.fraction));
+    let by_height = vec2<f32>(sun_in_plants(heights.x, kind.height_m), sun_in_plants(heights.y, kind.height_m));
+    return mix(by_height, mix(seen, vec2<f32>(1.0), LEAF_TRANSMISSION), frame.shade_strength);
 }
 
 // Reflectance of a blade: diffuse reflection from a partly rounded strip (its own normal, and Kajiya & Kay), transmission mostly straight

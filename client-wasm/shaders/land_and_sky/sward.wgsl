@@ -1,11 +1,11 @@
 // Colour of grass: of a point of a blade, and of a whole sward seen from afar.
 
-import package::constants::{LEAF_EXTINCTION, LEAST_DENSITY_DISTANCE_M};
+import package::constants::{LEAF_CLUMPING, LEAF_EXTINCTION, LEAST_DENSITY_DISTANCE_M, TAU};
 import package::inputs::frame::frame;
 import package::inputs::grass_kinds::leafiness;
 import package::inputs::sward_shade::SwardShade;
 import package::land_and_sky::grass_color::{plant_color, trodden};
-import package::land_and_sky::grass_light::{grass_lamps, grass_light, sun_in_grass};
+import package::land_and_sky::grass_light::{grass_lamps, grass_light, sun_on_sward};
 import package::uniforms::Kind;
 
 // Fraction of straw in the colour of a blade of a hue.
@@ -17,11 +17,10 @@ fn straw_of(hue: f32) -> f32 {
 const MEAN_STRAW: f32 = 0.05625;
 
 // Light from a blade to the eye, at fraction `t` of its length and at `height` relative to the mean height of its kind. `view` runs from the
-// eye to `p`, `light` is the fraction of unshadowed sunlight, `hue` runs from fresh to dry; `above` is the height relative to that of the blades around it as they
-// lean, where the map of the shade is.
+// eye to `p`, `lit` is the fraction of unshadowed sunlight that reaches the blade, `hue` runs from fresh to dry.
 fn blade_color(
     kind: Kind, tint: vec3<f32>, t: f32, height: f32, hue: f32, straw: f32, tilt: f32, normal: vec3<f32>, tangent: vec3<f32>, view: vec3<f32>, p: vec3<f32>,
-    light: f32, shade: SwardShade, above: f32,
+    lit: f32,
 ) -> vec3<f32> {
     var albedo = tint * plant_color(kind.root_rgb, kind.tip_rgb, t, hue);
     albedo = mix(albedo, vec3<f32>(0.38, 0.30, 0.13) * (0.35 + 0.65 * t), straw);
@@ -31,7 +30,6 @@ fn blade_color(
     // Short grass loses little light on the way down.
     let deep = smoothstep(0.0, 0.60, kind.height_m);
     let occlusion = mix(mix(0.60, 0.16, deep), 1.0, smoothstep(0.0, 0.85, max(height, t * 0.75)));
-    let lit = light * sun_in_grass(max(height, t * 0.7), kind, shade, above);
     return grass_light(albedo, normal, tangent, view, lit, occlusion) + grass_lamps(albedo, normal, tangent, view, p, height);
 }
 
@@ -94,15 +92,19 @@ fn sward_color(
 ) -> vec3<f32> {
     let leaf_area = leaf_area_of(kind);
     let free = clamp(-dot(view, up), 0.05, 1.0) / (VISIBLE_LEAF_EXTINCTION * max(leaf_area, 0.05));
+    let heights = max(1.0 - CANOPY_TOP_DEPTH - free * vec2<f32>(0.29, 1.39), vec2<f32>(0.0));
+    let along = mix(heights, vec2<f32>(1.0), 0.35);
+    // Optical depth towards the eye by the model of the shade, of upright blades that face all directions.
+    let eye_depth = LEAF_CLUMPING * 4.0 / TAU * max(leaf_area, 0.05) / clamp(-dot(view, up), 0.05, 1.0);
+    let lit = light * sun_on_sward(kind, shade, eye_depth, max(heights, along * 0.7));
     let tilt = length(lean);
     let tangent = normalize(up + vec3<f32>(lean.x, 0.0, lean.y) * 1.4);
     // Blades point in all directions, and those that face the eye are seen.
     let facing = normalize(up * 0.75 - (view - up * dot(view, up)) * 0.45 + vec3<f32>(lean.x, 0.0, lean.y) * 0.3);
     var color = vec3<f32>(0.0);
     for (var i = 0; i < 2; i++) {
-        let height = max(1.0 - CANOPY_TOP_DEPTH - free * select(1.39, 0.29, i == 0), 0.0);
-        let t = mix(height, 1.0, 0.35);
-        color += blade_color(kind, tint, t, height, select(0.65, 0.35, i == 0), MEAN_STRAW, tilt, facing, tangent, view, p, light, shade, height);
+        let hue = select(0.65, 0.35, i == 0);
+        color += blade_color(kind, tint, along[i], heights[i], hue, MEAN_STRAW, tilt, facing, tangent, view, p, lit[i]);
     }
     return 0.5 * color + frame.sun_rgb * (light * SWARD_SHEEN);
 }

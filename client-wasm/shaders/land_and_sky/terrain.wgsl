@@ -1,17 +1,17 @@
 // Ground: tiles of a quadtree.
 
-import package::constants::LITTER_END_M;
+import package::constants::{BARE_PLACES, BARE_WEIGHTS, LEAF_TOP, LITTER_END_M};
 import package::inputs::bend_atlas::{field_level, lean_of_field};
 import package::inputs::frame::frame;
 import package::inputs::grass_kinds::{kinds, kinds_blended};
 import package::inputs::lamps::lamps_on;
 import package::inputs::noise::{noise, noise_over};
 import package::inputs::shadows::sun_visible;
-import package::inputs::sward_shade::{shade_at, sun_over_grass};
+import package::inputs::sward_shade::{above_horizon, shade_at, sun_over_grass};
 import package::inputs::wind::{ground_wind_at, lean_of_wind};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::grass_tint;
-import package::land_and_sky::grass_light::sun_in_grass;
+import package::land_and_sky::grass_light::{even_depth, sun_in_grass};
 import package::land_and_sky::ground::{grass_fraction_over, ground_height, ground_normal, soft_fraction};
 import package::land_and_sky::ground_tile::{GroundTile, kind_of_plain, tile_vertex};
 import package::land_and_sky::haze::air_before;
@@ -107,6 +107,19 @@ fn fraction_before(p: vec2<f32>, is_bare: bool, span_m: f32, view: vec3<f32>, no
     return 0.5 * sum;
 }
 
+// Mean grass cover from a position towards the sun, weighted by the leaves that a ray to the sun meets in even grass. 0 where the maps of the shade tell it.
+fn fraction_toward_sun(p: vec2<f32>, is_mapped: bool, span_m: f32, kind: Kind) -> f32 {
+    let sun = above_horizon();
+    let reach_m = LEAF_TOP * kind.height_m / sun.y * sun.xz;
+    var places = BARE_PLACES;
+    var weights = BARE_WEIGHTS;
+    var sum = 0.0;
+    for (var i = 0; i < select(2, 0, is_mapped); i++) {
+        sum += weights[i] * grass_fraction_over(p + places[i] * reach_m, max(span_m, 0.4 * length(reach_m)));
+    }
+    return sum;
+}
+
 fn kind_of(ground: Ground) -> Kind {
     if is_plain {
         return kinds.list[ground.kind];
@@ -178,7 +191,9 @@ fn fs(ground: Ground) -> @location(0) vec4<f32> {
     if !is_plain && fraction < 1.0 {
         let soil = soil_at(p, span_m);
         let rough = normalize(normal + vec3<f32>(soil.slope.x, 0.0, soil.slope.y));
-        let direct = frame.sun_rgb * (sun_light * sun_over_grass(shade, 0.0) * max(dot(rough, frame.toward_sun), 0.0));
+        let around = fraction_toward_sun(p, shade.fraction >= 1.0, span_m, kind);
+        let reached = sun_over_grass(shade, 0.0, even_depth(kind) * around, kind.height_m);
+        let direct = frame.sun_rgb * (sun_light * reached * max(dot(rough, frame.toward_sun), 0.0));
         // Nearby grass hides part of the sky.
         let open = 1.0 - 0.5 * smoothstep(0.0, 0.5, soft_fraction(p));
         color = soil.albedo * (direct + ambient(rough) * open + lamps_on(ground.p, rough, 0.0)) * (1.0 - fraction);

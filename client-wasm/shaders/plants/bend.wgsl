@@ -18,6 +18,7 @@ import package::inputs::sward_shade::{shade_at, sun_over_grass};
 import package::inputs::wind::{gust_at, lean_of_wind};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::{drift_at, tint_of};
+import package::land_and_sky::grass_light::even_depth;
 import package::land_and_sky::ground::{fed, ground_height, ground_normal};
 import package::land_and_sky::haze::air_before;
 import package::land_and_sky::snow::{laden_mass_at, with_snow};
@@ -26,7 +27,7 @@ import package::plants::backbone::{drawn_out, WIDER};
 import package::plants::blade::{advance, BladeNature, Link, points_of, settle, Sway};
 import package::plants::drawn_blade::Blade;
 import package::plants::force_field::sheltered_at;
-import package::plants::grid_plants::{plants, chunks, LISTED, plant_place, growth};
+import package::plants::grid_plants::{plants, chunks, growth, HEAD_RADIUS_M, LISTED, plant_place};
 import package::plants::sift::{find_ground, sift_far, sift_near};
 
 struct BladeCounters {
@@ -42,8 +43,6 @@ struct BladeCounters {
 // Number of the frame that last moved each near plant.
 @group(1) @binding(7) var<storage, read_write> moved: array<u32>;
 
-// Approximate radius of a flower head (m).
-const HEAD_RADIUS_M: f32 = 0.04;
 // Screen radius below which a head is drawn as a disc (px).
 const FAR_HEAD_PX: f32 = 4.0;
 
@@ -268,7 +267,8 @@ fn show(plant: Plant, points: array<vec3<f32>, 3>, grown: f32, distance_m: f32, 
             var head = blade;
             head.width = small;
             head.kind_and_hue = kind;
-            head.sunlight *= sun_over_grass(shade_at(plant.root_m.xz + points[2].xz), points[2].y);
+            let around = kinds.list[plant.kind];
+            head.sunlight *= sun_over_grass(shade_at(plant.root_m.xz + points[2].xz), points[2].y, even_depth(around), around.height_m);
             let is_reference = plants.thinnest_px == 0.0;
             let is_far = HEAD_RADIUS_M * small < FAR_HEAD_PX * own * pixel_m;
             append(select(HEAD_LIST, FAR_HEAD_LIST, is_far & !is_reference), head);

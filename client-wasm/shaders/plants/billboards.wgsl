@@ -11,6 +11,7 @@ import package::inputs::sward_shade::shade_at;
 import package::inputs::wind::{gust_at, lean_of_wind, resolved_at};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_color::grass_tint;
+import package::land_and_sky::grass_light::sun_in_grass;
 import package::land_and_sky::ground::{fed, grass_fraction, grass_fraction_over, ground_height, ground_normal};
 import package::land_and_sky::haze::hazed;
 import package::land_and_sky::sky_light::ambient;
@@ -173,7 +174,8 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     // Near its root a clump has the colour of the grass around it.
     let afar = sward_color(ground, ground_normal(root), kind, tint, lean, view, light, shade);
     pose.root_color = hazed(with_snow(afar, ground, ground_normal(root), kind, view, light, shade), p);
-    let top = blade_color(kind, tint, 0.95, 0.9, 0.5, MEAN_STRAW, tilt, normal, tangent, view, p, light, shade, 0.9);
+    let lit = light * sun_in_grass(0.9, kind, shade, 0.9);
+    let top = blade_color(kind, tint, 0.95, 0.9, 0.5, MEAN_STRAW, tilt, normal, tangent, view, p, lit);
     pose.tip_color = hazed(mix(afar, top, 0.35 + 0.65 * contrast(distance_m)), p);
     pose.petal_light = frame.sun_rgb * light * 0.6 + ambient(normal) + lamps_on(p, normal, 0.3);
     poses_out[id.x] = pose;

@@ -6,6 +6,7 @@ import package::inputs::grass_kinds::kinds;
 import package::inputs::random::dither_at;
 import package::inputs::sward_shade::shade_at;
 import package::land_and_sky::grass_color::tint_of;
+import package::land_and_sky::grass_light::sun_in_grass;
 import package::land_and_sky::sward::{among, blade_color, straw_of};
 import package::plants::backbone::{backbone_at, corner_of, covered, side_at, tangent_at, width_at, width_fraction};
 import package::plants::drawn_blade::Blade;
@@ -95,10 +96,8 @@ fn strip_of(blade: Blade, corner: vec2<f32>, has_soft_borders: bool) -> Strip {
     let height = offset.y / kind.height_m;
     let hue = fract(blade.kind_and_hue);
     let shade = shade_at(p.xz);
-    let own = blade_color(
-        kind, tint_of(blade.drift), t, height, hue, straw_of(hue), tilt, soft, tangent, view, p, blade.sunlight, shade,
-        offset.y / shade.height_m,
-    );
+    let lit = blade.sunlight * sun_in_grass(max(height, t * 0.7), kind, shade, offset.y / shade.height_m);
+    let own = blade_color(kind, tint_of(blade.drift), t, height, hue, straw_of(hue), tilt, soft, tangent, view, p, lit);
     let color = among(own, blade.about, t, distance(blade.root_m, frame.eye_m));
     out.color = color * blade.air.a + blade.air.rgb;
     out.across = across;

@@ -3,6 +3,7 @@
 import package::constants::{LEAST_DENSITY_DISTANCE_M, UNIT_STEPS};
 import package::inputs::frame::frame;
 import package::inputs::random::random3;
+import package::plants::backbone::WIDER;
 import package::plants::chunk::Chunk;
 import package::uniforms::Plants;
 
@@ -11,6 +12,21 @@ import package::uniforms::Plants;
 
 // Start of the list of near plants.
 const LISTED: u32 = 2u;
+
+// Approximate radius of a flower head (m).
+const HEAD_RADIUS_M: f32 = 0.04;
+// Greatest width of a blade relative to `frame.blade_width_m`, by kind and chance.
+const WIDEST: f32 = 1.95;
+
+// Bound on how far a plant at a distance reaches beyond its height by the width of its blade and by its flower head, both of which grow where plants
+// thin out (m).
+fn widest_m(distance_m: f32, full_density_m: f32, heads_thin_m: f32, thinnest_px: f32) -> f32 {
+    let thinnest_m = distance_m * frame.pixel_rad * thinnest_px;
+    let width_m = max(frame.blade_width_m * WIDEST * max(distance_m / full_density_m, 1.0), thinnest_m);
+    // A square with a textured flower reaches twice its radius.
+    let head_m = 2.0 * max(HEAD_RADIUS_M * max(distance_m / heads_thin_m, 1.0), thinnest_m);
+    return 0.5 * WIDER * width_m + head_m;
+}
 
 // Position of plant `index` of a grid: a low-discrepancy sequence, so that any prefix of it covers the grid evenly.
 fn plant_place(grid: vec2<i32>, index: u32) -> vec2<f32> {

@@ -1,11 +1,13 @@
 // Culls grass grids around the camera and lists their plants in chunks, each one workgroup of the following passes.
 
-import package::constants::{CHUNK, GRID_BEYOND, GRID_HIDDEN, GRID_OUTSIDE, GRID_SHOWN};
+import package::constants::{CHUNK, DRAWN_LOWER, DRAWN_LOWER_M, GRID_BEYOND, GRID_HIDDEN, GRID_OUTSIDE, GRID_SHOWN, HORIZON_SAMPLES};
+import package::inputs::depth_pyramid::is_box_hidden;
 import package::inputs::frame::{frame, runtime_zero};
 import package::inputs::frustum::is_box_seen;
 import package::land_and_sky::ground::{ground_height, heights};
 import package::land_and_sky::sward::density;
 import package::plants::chunk::Chunk;
+import package::plants::grid_plants::widest_m;
 import package::uniforms::Squares;
 
 struct Workgroups {
@@ -21,13 +23,6 @@ struct Workgroups {
 @group(1) @binding(3) var lowest: texture_2d<f32>;
 // State of each grid of the square, for the map of the grids.
 @group(1) @binding(4) var<storage, read_write> states: array<u32>;
-
-// Samples of the horizon along a ray.
-const HORIZON_SAMPLES: u32 = 24u;
-// Maximum depth of the drawn land below the height map near the eye (m).
-const DRAWN_LOWER_M: f32 = 0.3;
-// Growth of that depth with distance (m/m), since tiles get coarser.
-const DRAWN_LOWER: f32 = 0.004;
 
 // Maximum difference of the hills beyond the edge of the world from a few samples of them (m).
 const HILLS_SLACK_M: f32 = 4.0;
@@ -70,7 +65,7 @@ fn lowest_within(low: vec2<f32>, high: vec2<f32>) -> f32 {
 }
 
 // Conservative horizon test: true if the land hides a box from the eye. At some fraction of the distance, all rays to the box cross one
-// rectangle, whose lowest ground is above the ray to the top of the box.
+// rectangle, whose lowest ground is above the ray to the top of the box. Twin of `hides` in lowest_land.rs.
 fn is_hidden(low: vec3<f32>, high: vec3<f32>) -> bool {
     let eye = frame.eye_m;
     // An eye below the ground sees through it.
@@ -86,6 +81,13 @@ fn is_hidden(low: vec3<f32>, high: vec3<f32>) -> bool {
         }
     }
     return false;
+}
+
+// Whether solids hide a box (m) of plants whose nearest is at a distance.
+fn is_box_behind_solids(low: vec3<f32>, high: vec3<f32>, distance_m: f32) -> bool {
+    let farthest_m = distance_m + distance(low, high);
+    let wider_m = widest_m(farthest_m, squares.full_density_m, squares.heads_thin_m, squares.thinnest_px);
+    return is_box_hidden(low - wider_m, high + wider_m);
 }
 
 @compute @workgroup_size(CHUNK)
@@ -115,7 +117,7 @@ fn list_grids(@builtin(global_invocation_id) id: vec3<u32>) {
     var state = GRID_SHOWN;
     if !is_box_seen(box_low, box_high) {
         state = GRID_OUTSIDE;
-    } else if is_hidden(box_low, box_high) {
+    } else if is_hidden(box_low, box_high) || is_box_behind_solids(box_low, box_high, distance_m) {
         state = GRID_HIDDEN;
     }
     if (state != GRID_SHOWN) & (squares.culls != 0) {

@@ -10,10 +10,12 @@ import package::inputs::grass_kinds::kinds;
 import package::inputs::lamps::lamps_on;
 import package::inputs::random::random3;
 import package::inputs::sward_shade::{shade_at, sun_over_grass};
-import package::land_and_sky::grass_light::{grass_lamps, grass_light, sun_in_plants};
+import package::land_and_sky::grass_light::{even_depth, grass_lamps, grass_light, sun_in_plants};
+import package::land_and_sky::ground::grass_fraction;
 import package::land_and_sky::sky_light::ambient;
 import package::plants::blade::{aside_of, meets_spheres};
-import package::plants::visible_plant::{FREE_BLOCK, kind_around, lists, variant_of, VisiblePlant};
+import package::plants::leaf_fold::fold;
+import package::plants::visible_plant::{closeness_of, FREE_BLOCK, kind_around, list_of, lists, variant_of, VisiblePlant};
 import package::uniforms::{BrushList, DrawnList};
 
 // Colour of a part at a height in the grass that hides it (1 at the mean height of the grass).
@@ -29,7 +31,8 @@ struct Row {
     rgb: u32,
     // Number of its component in the low half, number of steps below it there in the high half.
     limb_and_steps: u32,
-    unused: u32,
+    // `FIRST_ROW` and `LAST_ROW`, kind of veins in bits 2 and 3, their number in bits 4 to 7, and fraction of its ribbon in the high half.
+    close: u32,
     // For a petal: distance from the tip of the stalk (m).
     petal_m: f32,
     // Cosine and sine of the petal's rotation around the stalk.
@@ -83,6 +86,8 @@ struct Limb {
 
 // Whether leaves tremble in the rain. Fixed when a pipeline is made.
 override trembles: bool = true;
+// Whether near plants are drawn as curves. Fixed when a pipeline is made.
+override curves: bool = false;
 
 // Maximum dip of a component relative to its length; at that point its own weight has bent it completely.
 const FARTHEST_DIP: f32 = 0.25;
@@ -94,6 +99,8 @@ struct Border {
     // Coordinate across its ribbon, as in `Ribbon`.
     across: f32,
     color: vec3<f32>,
+    // As in `Row`, with the closeness in bits 8 to 15.
+    close: u32,
 }
 
 struct Ribbon {
@@ -264,6 +271,18 @@ fn bow(fraction: f32) -> f32 {
     return fraction * fraction * (1.5 - 0.5 * fraction);
 }
 
+// Direction of the curve of a near plant at a row whose lower section has the direction `along`: the mean of those of both sections.
+fn smoothed(along: vec3<f32>, plant: VisiblePlant, row: Row, own: Limb, list: BrushList) -> vec3<f32> {
+    let is_within = (row.limb_and_steps >> 16u) < own.steps;
+    if !curves || closeness_of(plant) == 0u || !is_within || row.width_and_material >> 16u == PETAL {
+        return along;
+    }
+    var above = row;
+    above.limb_and_steps += 1u << 16u;
+    let ahead = bent_row(plant, above, plant.normal, list).along;
+    return unit_or(along + ahead * (f32(closeness_of(plant)) / 255.0), along);
+}
+
 @compute @workgroup_size(WORKGROUP_SIZE)
 fn ribbons(@builtin(global_invocation_id) id: vec3<u32>) {
     let owner = owners[id.x / BLOCK_ROWS];
@@ -271,7 +290,7 @@ fn ribbons(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let plant = visible_plants[owner];
-    let list = lists.list[plant.list];
+    let list = lists.list[list_of(plant)];
     let number = id.x - plant.first_block * BLOCK_ROWS;
     if number >= list.rows {
         return;
@@ -281,9 +300,9 @@ fn ribbons(@builtin(global_invocation_id) id: vec3<u32>) {
     let size = plant.shown_size;
     let normal_up = plant.normal;
     let bent = bent_row(plant, row, normal_up, list);
-    let along = bent.along;
-    var p = plant.root_m + bent.at;
     let own = limb_of(plant, row, list);
+    let along = smoothed(bent.along, plant, row, own, list);
+    var p = plant.root_m + bent.at;
     if trembles && list.drops_per_m2_per_s * own.drop_m2 > 0.0 {
         let number = vec2<u32>(u32(plant.hue * UNIT_STEPS), row.limb_and_steps & 0xffffu);
         // The larger the component, the less the mass of the drop counts.
@@ -305,12 +324,12 @@ fn ribbons(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let width = row.width_and_material & 0xffffu;
     let half = max(f32(width) * WIDTH_UNIT_M * size, select(0.0, 0.45 * plant.distance_m * frame.pixel_rad, width > 0u));
-    let lit = Lit(p, along, side, half, view, material, row.rgb);
+    let lit = Lit(p, along, side, half, view, material, row.rgb, row.close | (closeness_of(plant) << 8u));
     borders_out[2u * id.x] = lit_border(plant, lit, -1.0);
     borders_out[2u * id.x + 1u] = lit_border(plant, lit, 1.0);
 }
 
-// A row to be lit: position on its axis (m), axis, side, half width (m), view direction, material and colour.
+// A row to be lit: position on its axis (m), axis, side, half width (m), view direction, material and colour, and `close` as in `Border`.
 struct Lit {
     at: vec3<f32>,
     along: vec3<f32>,
@@ -319,6 +338,7 @@ struct Lit {
     view: vec3<f32>,
     material: u32,
     rgb: u32,
+    close: u32,
 }
 
 // Left (-1) or right (1) border of a row.
@@ -339,7 +359,9 @@ fn lit_border(plant: VisiblePlant, row: Lit, across: f32) -> Border {
     let up = clamp(above / max(plant.height_m, 0.05), 0.0, 1.0);
     let deep = smoothstep(0.0, 0.6, plant.height_m);
     let occlusion = mix(mix(0.62, 0.30, deep), 1.0, smoothstep(0.0, 0.8, up));
-    let light = plant.sunlight * sun_in_plants(0.2 + up, plant.height_m) * sun_over_grass(shade_at(p.xz), above);
+    let around = kinds.list[kind_around(plant)];
+    let over_grass = sun_over_grass(shade_at(p.xz), above, even_depth(around) * grass_fraction(plant.root_m.xz), around.height_m);
+    let light = plant.sunlight * sun_in_plants(0.2 + up, plant.height_m) * over_grass;
     var color: vec3<f32>;
     if row.material == PETAL {
         let sun_facing = dot(normal, frame.toward_sun);
@@ -349,10 +371,9 @@ fn lit_border(plant: VisiblePlant, row: Lit, across: f32) -> Border {
     } else {
         color = grass_light(albedo, rounded, row.along, row.view, light, occlusion) + grass_lamps(albedo, rounded, row.along, row.view, p, up);
     }
-    let grass_m = kinds.list[kind_around(plant)].height_m;
-    let seen = among_grass(color, plant, above / grass_m) * plant.air.a + plant.air.rgb;
+    let seen = among_grass(color, plant, above / around.height_m) * plant.air.a + plant.air.rgb;
     let is_folded = !is_stalk & (row.material != PETAL);
-    return Border(p, select(9.0, across, is_folded), seen);
+    return Border(p, select(9.0, across, is_folded), seen, row.close);
 }
 
 @vertex
@@ -373,9 +394,7 @@ fn vs(@builtin(vertex_index) index: u32, @builtin(instance_index) instance: u32)
 
 @fragment
 fn fs(ribbon: Ribbon) -> @location(0) vec4<f32> {
-    // A leaf is folded along its middle: one half lighter than the other, the rib darker. `across` is extrapolated on ribbons that reach
-    // behind the eye.
+    // `across` is extrapolated on ribbons that reach behind the eye.
     let across = clamp(ribbon.across, -9.0, 9.0);
-    let fold = 1.0 + 0.10 * across - 0.18 * (1.0 - smoothstep(0.0, 0.25, abs(across)));
-    return vec4<f32>(ribbon.color * select(fold, 1.0, abs(across) > 1.5), 1.0);
+    return vec4<f32>(ribbon.color * select(fold(across), 1.0, abs(across) > 1.5), 1.0);
 }

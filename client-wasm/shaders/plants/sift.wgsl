@@ -2,11 +2,12 @@
 // plants can be large, since few of them are in view at once.
 
 import package::constants::{CHUNK, NEAR_SLOTS, TUFT_REACH_M};
+import package::inputs::depth_pyramid::is_sphere_hidden;
 import package::inputs::frame::frame;
 import package::inputs::frustum::is_seen;
 import package::inputs::random::random3;
 import package::land_and_sky::ground::{grass_fraction, ground_height};
-import package::plants::grid_plants::{chunks, growth, LISTED, plant_place, plants};
+import package::plants::grid_plants::{chunks, growth, LISTED, plant_place, plants, widest_m};
 
 @group(1) @binding(8) var<storage, read_write> sifted: array<atomic<u32>>;
 // Workgroups of near plants and of others, as arguments of indirect dispatches.
@@ -28,8 +29,13 @@ fn ground_of(grid: vec2<i32>, index: u32) -> f32 {
 fn may_stand(grid: vec2<i32>, index: u32, height: f32) -> bool {
     let place = plant_place(grid, index);
     let ground = vec3<f32>(place.x, height, place.y);
-    let is_grown = growth(index, max(distance(ground, frame.eye_m) - TUFT_REACH_M, 0.0)) > 0.01;
-    return (height > NO_PLANT_M) & is_grown & ((plants.culls == 0u) | is_seen(ground, plants.plant_reach_m));
+    let distance_m = distance(ground, frame.eye_m);
+    let is_grown = growth(index, max(distance_m - TUFT_REACH_M, 0.0)) > 0.01;
+    if !((height > NO_PLANT_M) & is_grown & ((plants.culls == 0u) | is_seen(ground, plants.plant_reach_m))) {
+        return false;
+    }
+    let reach_m = plants.plant_reach_m + widest_m(distance_m + TUFT_REACH_M, plants.full_density_m, plants.heads_thin_m, plants.thinnest_px);
+    return !is_sphere_hidden(ground, reach_m);
 }
 
 // Reserves the next index of a list; every full chunk of entries adds a workgroup.

@@ -1,10 +1,11 @@
 // Underbrush: culling, force and level of detail of each plant.
 
 import package::constants::{
-    AIR_KG_PER_M3, BLOCK_ROWS, CHUNK, DRAW_WORDS, ENLARGEMENT_EXPONENT, FALL_PA, MIN_KEPT_FRACTION,
+    AIR_KG_PER_M3, BLOCK_ROWS, CHUNK, CLOSE_PX, DRAW_WORDS, ENLARGEMENT_EXPONENT, FALL_PA, FULLY_CLOSE, MIN_KEPT_FRACTION,
     SPARE_DIVISOR, TAU, UNDERBRUSH_LEVELS, UNDERBRUSH_LISTS, VARIANTS, WORKGROUP_SIZE,
 };
 import package::inputs::bend_atlas::lean_of_field;
+import package::inputs::depth_pyramid::is_sphere_hidden;
 import package::inputs::frame::{frame, runtime_zero};
 import package::inputs::frustum::is_seen;
 import package::inputs::grass_kinds::{kind_at, kinds};
@@ -19,6 +20,7 @@ import package::land_and_sky::haze::air_before;
 import package::land_and_sky::snow::with_snow;
 import package::land_and_sky::sward::{bare_between, sward_color};
 import package::plants::force_field::{forces_at, sheltered};
+import package::plants::near_leaf::{fs_close, vs_close};
 import package::plants::ribbons::{fs, ribbons, vs};
 import package::plants::visible_plant::{FREE_BLOCK, lists, VisiblePlant};
 import package::uniforms::UnderbrushFrame;
@@ -146,7 +148,8 @@ fn sift(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index
     let plant = brush_plants[index];
     let shown = display_size(plant);
     let reach_m = brush.species[plant.species_and_variant & 255u].reach_m * plant.size * shown.larger * 1.8;
-    if (shown.left > 0.01) & ((brush.culls == 0u) | is_seen(shown.root, reach_m)) {
+    let may_show = (shown.left > 0.01) & ((brush.culls == 0u) | is_seen(shown.root, reach_m));
+    if may_show && !is_sphere_hidden(shown.root, reach_m) {
         let number = atomicAdd(&sifted[0], 1u);
         atomicStore(&sifted[1u + number], index);
         if number % CHUNK == 0u {
@@ -242,10 +245,19 @@ fn standing(plant: UnderbrushPlant, shown: DisplaySize, height: f32) -> VisibleP
     return out;
 }
 
-// Finest level of detail of a plant. Plants of one height change level at different distances.
-fn finest_level(shown: DisplaySize) -> u32 {
-    let fine_px = shown.tall_px / (brush.coarseness * (0.85 + 0.3 * shown.lot));
-    return select(select(select(3u, 2u, fine_px > 26.0), 1u, fine_px > 90.0), 0u, fine_px > 300.0);
+// Height of a plant (px) that its level of detail depends on. Plants of one height change level at different distances.
+fn fine_px(shown: DisplaySize) -> f32 {
+    return shown.tall_px / (brush.coarseness * (0.85 + 0.3 * shown.lot));
+}
+
+// Finest level of detail of a plant of that height.
+fn finest_level(fine_px: f32) -> u32 {
+    return select(select(select(3u, 2u, fine_px > 26.0), 1u, fine_px > 90.0), 0u, fine_px > CLOSE_PX);
+}
+
+// Closeness of a plant of that height, 0 where it changes to the finest level.
+fn closeness(fine_px: f32) -> u32 {
+    return u32(255.0 * smoothstep(brush.close_px, FULLY_CLOSE * brush.close_px, fine_px) + 0.5);
 }
 
 @compute @workgroup_size(CHUNK)
@@ -266,12 +278,13 @@ fn stand(@builtin(global_invocation_id) id: vec3<u32>) {
     out.pressure_pa = pressure;
     out.variant_and_kind += select(0u, VARIANTS, fall != 0u);
     out.spheres = spheres_at(shown.root, nature.reach_m * out.shown_size);
-    let place = room(species, finest_level(shown), id.x);
+    let tall_px = fine_px(shown);
+    let place = room(species, finest_level(tall_px), id.x);
     if place.x == UNDERBRUSH_LEVELS {
         return;
     }
     let list = species * UNDERBRUSH_LEVELS + place.x;
-    out.list = list;
+    out.list = list | (select(0u, closeness(tall_px), place.x == 0u) << 24u);
     out.first_block = place.y;
     visible_out[id.x] = out;
     listed[lists.list[list].first_listed + atomicAdd(&counters.drawn[list], 1u)] = place.y;

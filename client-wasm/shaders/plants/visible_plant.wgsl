@@ -35,7 +35,7 @@ struct VisiblePlant {
     grass_fraction: f32,
     // Tint of the surrounding grass.
     tint: vec3<f32>,
-    // Number of its list.
+    // Number of its list, and in the highest byte its closeness: 0 drawn in straight sections, 255 as curves with veins.
     list: u32,
     // Normal of the land.
     normal: vec3<f32>,
@@ -52,6 +52,14 @@ const FREE_BLOCK: u32 = 0xffffffffu;
 
 fn variant_of(plant: VisiblePlant) -> u32 {
     return plant.variant_and_kind % (2u * VARIANTS);
+}
+
+fn list_of(plant: VisiblePlant) -> u32 {
+    return plant.list & 0xffffffu;
+}
+
+fn closeness_of(plant: VisiblePlant) -> u32 {
+    return plant.list >> 24u;
 }
 
 // Kind of the surrounding grass.

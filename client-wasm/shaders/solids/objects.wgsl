@@ -8,6 +8,7 @@ import package::inputs::wind::{lean_of_wind, wind_at};
 import package::land_and_sky::clouds::cloud_light;
 import package::land_and_sky::grass_light::{grass_lamps, grass_light};
 import package::land_and_sky::haze::{air_before, hazed};
+import package::land_and_sky::snow::{has_snow, snow_light};
 import package::land_and_sky::sky_light::{ambient, sky_color};
 import package::solids::limbs::{bent_in_tree, BentLimb, of_limb};
 
@@ -166,7 +167,7 @@ fn surface_of(modelled: Vertex, index: u32) -> Surface {
 }
 
 @vertex
-fn vs(vertex: Vertex, @builtin(instance_index) index: u32) -> Surface {
+fn vs(vertex: Vertex, @location(4) index: u32) -> Surface {
     return surface_of(vertex, index);
 }
 
@@ -190,6 +191,27 @@ fn matte(p: vec3<f32>, normal: vec3<f32>, view: vec3<f32>, albedo: vec3<f32>, op
     }
     let diffuse = max(dot(normal, frame.toward_sun), 0.0);
     return albedo * (frame.sun_rgb * light * diffuse + ambient(normal) + lamps_on(p, normal, 0.0));
+}
+
+// Depth of snow that hides stone and bark (m).
+const OPAQUE_SNOW_M: f32 = 0.02;
+
+// Fraction of a surface that snow hides: leaves that face upward, and stone, bark and roofs that are not too steep. Vehicles and gates stay bare.
+fn snow_on(normal: vec3<f32>, is_leaf: bool) -> f32 {
+    if is_glossy || !has_snow {
+        return 0.0;
+    }
+    let on_leaf = frame.crown_snow * smoothstep(-0.1, 0.9, normal.y);
+    let on_stone = min(frame.snow_m / OPAQUE_SNOW_M, 1.0) * smoothstep(0.6, 0.85, normal.y);
+    return select(on_stone, on_leaf, is_leaf);
+}
+
+// Colour of a surface with the snow that lies on it. `light` is the fraction of unshadowed sunlight.
+fn under_snow(color: vec3<f32>, p: vec3<f32>, normal: vec3<f32>, is_leaf: bool, light: f32) -> vec3<f32> {
+    if is_glossy || !has_snow {
+        return color;
+    }
+    return mix(color, snow_light(p, normal, 0.0, light), snow_on(normal, is_leaf));
 }
 
 fn sun_light_at(p: vec3<f32>, normal: vec3<f32>) -> f32 {
@@ -230,6 +252,7 @@ fn fs(surface: Surface) -> @location(0) vec4<f32> {
     let light = sun_light_at(surface.p, normal);
     let albedo = surface.color.rgb * select(1.0, veins(leaf), is_leaf);
     var color = matte(surface.p, normal, view, albedo, surface.color.a, is_leaf, light);
+    color = under_snow(color, surface.p, normal, is_leaf, light);
     if is_glossy && !is_leaf {
         let gloss = surface.color.a;
         let half_way = normalize(frame.toward_sun - view);
@@ -260,7 +283,7 @@ struct Afar {
 }
 
 @vertex
-fn vs_afar(vertex: Vertex, @builtin(instance_index) index: u32) -> Afar {
+fn vs_afar(vertex: Vertex, @location(4) index: u32) -> Afar {
     let surface = surface_of(vertex, index);
     let is_leaf = surface.leaf.x > 0.0;
     let view = normalize(surface.p - frame.eye_m);
@@ -271,7 +294,8 @@ fn vs_afar(vertex: Vertex, @builtin(instance_index) index: u32) -> Afar {
     let black = matte(surface.p, normal, view, vec3<f32>(0.0), surface.color.a, is_leaf, light);
     let plain = matte(surface.p, normal, view, surface.color.rgb, surface.color.a, is_leaf, light);
     let air = air_before(surface.p);
-    return Afar(surface.position, (plain - black) * air.a, black * air.a + air.rgb, surface.leaf);
+    let sheen = under_snow(black, surface.p, normal, is_leaf, light);
+    return Afar(surface.position, (plain - black) * (air.a * (1.0 - snow_on(normal, is_leaf))), sheen * air.a + air.rgb, surface.leaf);
 }
 
 @fragment
@@ -290,7 +314,7 @@ struct Shade {
 }
 
 @vertex
-fn vs_shadow(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
+fn vs_shadow(vertex: Vertex, @location(4) index: u32) -> Shade {
     var out: Shade;
     let own = moved(vertex, instances[index], sways[index]);
     out.position = frame.shadow_from_world * vec4<f32>(placed(own, instances[index], sways[index]), 1.0);
@@ -299,7 +323,7 @@ fn vs_shadow(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
 }
 
 @vertex
-fn vs_shadow_far(vertex: Vertex, @builtin(instance_index) index: u32) -> Shade {
+fn vs_shadow_far(vertex: Vertex, @location(4) index: u32) -> Shade {
     var out: Shade;
     let own = moved(vertex, instances[index], sways[index]);
     out.position = frame.lights.far_shadow_from_world * vec4<f32>(placed(own, instances[index], sways[index]), 1.0);

@@ -75,6 +75,7 @@ impl Renderer {
         for number in 0..plan.batches {
             let mut batch = Batch::begin(self, &mut scene, &plan, number);
             batch.shadows();
+            batch.occluders();
             batch.bend();
             let picture = batch.opaque();
             batch.blended(picture);

@@ -33,7 +33,7 @@ pub use inputs::bend_atlas::reach_m as bend_reach_m;
 #[cfg(not(target_arch = "wasm32"))]
 pub use offscreen::OffscreenRenderer;
 pub use options::quality::{DeviceClass, Quality, REFERENCE_REACH_M};
-pub use options::render_options::{BlendOrder, FarPlants, RenderOptions};
+pub use options::render_options::{BlendOrder, FarPlants, Occlusion, RenderOptions};
 pub use options::split::{SideOptions, Split};
 pub use prairie_core::light::sun::Sun;
 pub use renderer::{NextStage, Renderer};

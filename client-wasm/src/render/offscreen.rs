@@ -128,6 +128,12 @@ impl OffscreenRenderer {
         bytemuck::pod_collect_to_vec::<u8, u32>(&read(&self.gpu, map.counts())).try_into().ok()
     }
 
+    /// Numbers of vehicle parts, trees, stones and models in view of the newest frame and of those drawn, and of the triangles of the latter.
+    pub fn drawn_solids(&self) -> [u64; 3] {
+        let objects = self.renderer.scene.as_ref().and_then(|scene| scene.objects.as_ref());
+        objects.map_or([0; 3], |objects| objects.drawn(|buffer| read(&self.gpu, buffer)))
+    }
+
     /// Number of underbrush plants that the newest frame drew: those in view, thinned out with distance.
     pub fn drawn_underbrush(&self) -> u32 {
         let underbrush = self.renderer.scene.as_ref().and_then(|scene| scene.underbrush.as_ref());

@@ -7,6 +7,7 @@ use crate::render::gpu::pipeline::PassFactory;
 use crate::render::gpu::pipeline_statistics::StatisticsQueries;
 use crate::render::gpu::timestamps::TimestampQueries;
 use crate::render::inputs::daylight::Daylight;
+use crate::render::inputs::depth_pyramid::DepthPyramid;
 use crate::render::inputs::frame_bindings::FrameBindings;
 use crate::render::land_and_sky::sky::Sky;
 use crate::render::land_and_sky::tone::ToneMapping;
@@ -34,6 +35,8 @@ pub struct Renderer {
     pub(super) tone: ToneMapping,
     pub(super) sky: Sky,
     /// Created when first needed.
+    pub(super) depth_pyramid: Option<DepthPyramid>,
+    /// Created when first needed.
     pub(super) weighted: Option<WeightedOit>,
     /// Times the passes, if set.
     pub(super) timestamps: Option<TimestampQueries>,
@@ -53,6 +56,7 @@ impl Renderer {
         Self {
             tone: ToneMapping::new(&factory, format, &targets.color, targets.scale),
             sky: Sky::new(&factory),
+            depth_pyramid: None,
             gpu: gpu.clone(),
             quality,
             options: RenderOptions::default(),
@@ -137,6 +141,9 @@ impl Renderer {
     fn create_targets(&mut self) {
         self.targets = Targets::new(&self.gpu, self.size_px, self.quality, self.resolution);
         self.tone.set_picture(&self.targets.color, self.targets.scale);
+        if let Some(pyramid) = &mut self.depth_pyramid {
+            pyramid.set_depth(&self.gpu, &self.targets.depth);
+        }
         self.weighted = None;
     }
 
@@ -197,7 +204,8 @@ impl Renderer {
 
 fn pass_factory(gpu: &Gpu, quality: Quality, bindings: &FrameBindings, [has_kinds, has_snow]: [bool; 2]) -> PassFactory {
     let (samples, soft_shadows) = (quality.samples(gpu.is_software), !quality.is_cheap(gpu.is_software));
-    PassFactory { gpu: gpu.clone(), frame_layout: bindings.layout.clone(), samples, has_kinds, soft_shadows, has_snow }
+    let (frame_layout, pyramid) = (bindings.layout.clone(), bindings.pyramid.clone());
+    PassFactory { gpu: gpu.clone(), frame_layout, pyramid, samples, has_kinds, soft_shadows, has_snow }
 }
 
 /// Resources of a stage that no frame shows yet.

@@ -38,6 +38,7 @@ mod lees;
 mod light;
 mod models;
 mod natural_wind;
+mod occlusion;
 mod order;
 mod plain;
 mod resolution;
@@ -245,7 +246,7 @@ fn probe_with(gpu: &Gpu, picture: &OffscreenRenderer, constants: &[Constant], bo
 }
 
 /// [`probe`] with the declarations of a file, such as `plants/bend`.
-fn probe_in(gpu: &Gpu, picture: &OffscreenRenderer, file: &str, body: &str, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
+pub(super) fn probe_in(gpu: &Gpu, picture: &OffscreenRenderer, file: &str, body: &str, places: &[[f32; 4]]) -> Vec<[f32; 4]> {
     compute(gpu, picture, &probing(file, body), &[], places, places.len() as u32)
 }
 
@@ -272,6 +273,7 @@ fn compute(
     let factory = PassFactory {
         gpu: gpu.clone(),
         frame_layout: renderer.bindings.layout.clone(),
+        pyramid: renderer.bindings.pyramid.clone(),
         samples: 1,
         has_kinds: true,
         soft_shadows: true,

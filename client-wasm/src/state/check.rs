@@ -41,6 +41,7 @@ fn check_grids(scene: &Scene) -> Result<(), MirrorError> {
     for mean in scene.wind.mean_m_per_s {
         within("wind.mean_m_per_s", mean, -40.0, 40.0)?;
     }
+    within("wind.turbulence_below_m", scene.wind.turbulence_below_m, 0.0, 10_000.0)?;
     let Stream { theta_error_deg, omega_error_rad_per_s, wind_error_m_per_s, dust_error } = scene.stream;
     within("stream.theta_error_deg", theta_error_deg, 0.05, 5.0)?;
     within("stream.omega_error_rad_per_s", omega_error_rad_per_s, 0.01, 1.0)?;

@@ -1,9 +1,13 @@
 //! The command line: the parts common to all commands, and one file per command.
 
 mod announce;
+mod calibrate;
+#[cfg(feature = "charts")]
+mod chart;
 mod check;
 mod completions;
 mod diff;
+mod explain;
 #[cfg(feature = "picture")]
 mod film;
 mod log;
@@ -25,14 +29,20 @@ mod tls;
 mod unknown_word;
 mod usage;
 mod version;
+#[cfg(not(feature = "charts"))]
+mod without_charts;
 #[cfg(not(feature = "picture"))]
 mod without_picture;
 mod world;
 
+use calibrate::Calibrate;
+#[cfg(feature = "charts")]
+use chart::{Chart, Stability};
 use check::Check;
 use clap::{Parser, Subcommand};
 use completions::Completions;
 use diff::DiffArguments;
+use explain::Explain;
 #[cfg(feature = "picture")]
 use film::Film;
 use log::LogFormat;
@@ -47,6 +57,8 @@ use scenes::Scenes;
 use schema::Schema;
 use serve::Serve;
 use std::process::ExitCode;
+#[cfg(not(feature = "charts"))]
+use without_charts::{Chart, Stability};
 #[cfg(not(feature = "picture"))]
 use without_picture::{Film, Picture};
 
@@ -97,6 +109,12 @@ enum Command {
     /// Check scenes and report their faults with line and column
     #[command(after_help = check::EXAMPLES)]
     Check(Check),
+    /// Explain what a scene models: methods, errors, costs, and its plan
+    #[command(after_help = explain::EXAMPLES)]
+    Explain(Explain),
+    /// Measure this machine, for the costs in plans
+    #[command(after_help = calibrate::EXAMPLES)]
+    Calibrate(Calibrate),
     /// Write a scene to start from, with its maps, into a folder of its own
     #[command(after_help = new::EXAMPLES)]
     New(New),
@@ -112,6 +130,12 @@ enum Command {
     /// Draw a film of a scene, without a browser
     #[cfg_attr(feature = "picture", command(after_help = film::EXAMPLES))]
     Film(Film),
+    /// Measure methods on problems with known solutions: error against time
+    #[cfg_attr(feature = "charts", command(after_help = chart::CHART_EXAMPLES))]
+    Chart(Chart),
+    /// Measure where methods fail: maps, and limits beside theory
+    #[cfg_attr(feature = "charts", command(after_help = chart::STABILITY_EXAMPLES))]
+    Stability(Stability),
     /// Print the script that completes commands, options and files in a shell
     #[command(after_help = completions::EXAMPLES)]
     Completions(Completions),
@@ -148,11 +172,15 @@ pub(crate) fn run() -> anyhow::Result<ExitCode> {
         Command::Diff(diff) => diff.run(),
         Command::Scenes(scenes) => scenes.run().map(done),
         Command::Check(check) => check.run(),
+        Command::Explain(explain) => explain.run().map(done),
+        Command::Calibrate(calibrate) => calibrate.run().map(done),
         Command::New(new) => new.run().map(done),
         Command::Schema(schema) => schema.run().map(done),
         Command::Maps(maps) => maps.run().map(done),
         Command::Picture(picture) => picture.run().map(done),
         Command::Film(film) => film.run().map(done),
+        Command::Chart(chart) => chart.run().map(done),
+        Command::Stability(stability) => stability.run().map(done),
         Command::Completions(completions) => completions.run().map(done),
         Command::Man(manual) => manual.run().map(done),
     }

@@ -48,9 +48,9 @@ pub(super) struct Shot {
     /// Draw a map of the grass grids over the picture: which are culled, and the level of detail of the others
     #[arg(long)]
     grids: bool,
-    /// Let grass cast shadows on grass and ground
+    /// Shade grass by the height above the ground alone, instead of letting it cast shadows on grass and ground
     #[arg(long)]
-    grass_shadows: bool,
+    no_grass_shadows: bool,
     /// Draw two render options side by side: two qualities, transparencies or representations of distant plants, such as low,high or cut,sorted
     #[arg(long, value_name = "LEFT,RIGHT")]
     compare: Option<String>,
@@ -114,7 +114,7 @@ impl Shot {
                 far_plants: self.far,
                 raises_far_wind: self.raise_far_wind,
                 shows_grids: self.grids,
-                grass_shadows: self.grass_shadows,
+                grass_shadows: !self.no_grass_shadows,
                 ..RenderOptions::default()
             },
             level: 0.0,

@@ -90,7 +90,9 @@ fn keep(folder: &Path, scene: &LoadedScene) -> io::Result<Option<PathBuf>> {
             fs::File::open(&to)?.sync_all()?;
             sync_folder(&to)?;
         }
-        let copy = scenes::load(new.join(within(scene_file))).map_err(io::Error::other)?;
+        let scene_copy = new.join(within(scene_file));
+        scenes::load_open(scene_file).map_err(io::Error::other)?.keep_plan(&scene_copy)?;
+        let copy = scenes::load(scene_copy).map_err(io::Error::other)?;
         if name_of(&copy) != name_of(scene) {
             return Err(io::Error::other("they have changed since they were loaded, or name others by absolute paths"));
         }

@@ -11,6 +11,7 @@ use crate::log_limit::LogLimit;
 use crate::metrics::ServerStats;
 use crate::runner::{Attendance, Published};
 use crate::scene_menu::SceneMenu;
+use crate::scenes::Explanation;
 use crate::stream::{Clients, Counters};
 use crate::world::Command;
 use bytes::Bytes;
@@ -47,6 +48,8 @@ pub(crate) struct App {
     pub(crate) attendance: Arc<Attendance>,
     pub(crate) proofs: Proofs,
     pub(crate) scene_name: String,
+    /// What the scene models, by which methods, and what is planned.
+    pub(crate) explanation: Arc<Explanation>,
     pub(crate) scene_menu: SceneMenu,
     /// The encoded scene message, the same for all clients.
     pub(crate) scene: Bytes,

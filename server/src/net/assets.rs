@@ -30,6 +30,9 @@ impl Asset {
     }
 }
 
+/// The page of charts.
+pub(super) const CHARTS: &str = "charts.html";
+
 const ASSETS: &[(&str, Asset)] = include!(concat!(env!("OUT_DIR"), "/client.rs"));
 
 /// The embedded file at the path of a request, with or without its leading slash; `/` is `index.html`.
@@ -73,7 +76,7 @@ mod tests {
             assert!(asset.gzip.is_none_or(|gzip| gzip[..2] == [0x1f, 0x8b]), "{name}: gzip magic");
             assert!(asset.brotli.is_none_or(|brotli| brotli.len() < asset.bytes.len()), "{name}");
             assert_eq!(ASSETS.iter().filter(|(_, other)| other.hash == asset.hash).count(), 1, "{name}");
-            assert_eq!(asset.is_immutable, *name != "index.html", "{name}");
+            assert_eq!(asset.is_immutable, !["index.html", CHARTS].contains(name), "{name}");
             assert!(!asset.is_immutable || name.contains(asset.hash), "{name} is named after other contents");
         }
     }

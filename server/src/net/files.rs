@@ -2,6 +2,7 @@
 
 use super::assets::{self, Asset};
 use super::encoding::{self, Encoding};
+use super::security;
 use axum::http::{HeaderMap, HeaderName, StatusCode, Uri, header};
 use axum::response::{IntoResponse, Response};
 
@@ -17,6 +18,14 @@ pub(super) async fn file(uri: Uri, headers: HeaderMap) -> Response {
     match assets::asset(uri.path()) {
         Some(asset) => respond(asset, &headers),
         None => (StatusCode::NOT_FOUND, "no such page\n").into_response(),
+    }
+}
+
+/// Responds with the page of charts, whose script is in the page itself.
+pub(super) async fn charts(headers: HeaderMap) -> Response {
+    match assets::asset(assets::CHARTS) {
+        Some(page) => security::allow_script_of(page.bytes, respond(page, &headers)),
+        None => (StatusCode::NOT_FOUND, "built without the page of charts\n").into_response(),
     }
 }
 

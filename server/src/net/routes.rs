@@ -1,4 +1,4 @@
-//! HTTP routes: `/ws`, the reports on the server, `/api` with the fields and the scenes, `/report` and the client's files.
+//! HTTP routes: `/ws`, the reports on the server, `/api` with the fields and the scenes, `/report`, `/charts` and the client's files.
 
 use super::app::App;
 use super::connection::Connection;
@@ -20,10 +20,13 @@ pub(crate) fn router(app: Arc<App>) -> Router {
         .route("/metrics", get(health::metrics))
         .route("/api/wind", get(api::wind).post(api::winds))
         .route("/api/bend", get(api::bend).post(api::bends))
+        .route("/api/plan", get(scenes::plan))
         .route("/api/scenes", get(scenes::list))
         .route("/api/scenes/{name}/picture", get(scenes::picture))
         .route("/api/scene", post(scenes::change))
         .route("/report", post(page_errors::receive))
+        .route("/charts", get(files::charts))
+        .route("/charts.html", get(files::charts))
         .fallback(get(files::file))
         .layer(middleware::from_fn_with_state(app.clone(), until_stopped))
         .layer(middleware::from_fn_with_state(app.clone(), own_host))

@@ -1,4 +1,4 @@
-//! The menu of scenes by HTTP: the list, a picture of each, and the change to one.
+//! Scenes by HTTP: the plan of the running one, and the menu: the list, a picture of each, and the change to one.
 
 use super::app::App;
 use crate::scene_menu::ChangeError;
@@ -21,6 +21,11 @@ const PICTURE_CACHE: &str = "public, max-age=86400";
 pub(super) async fn list(State(app): State<Arc<App>>) -> Response {
     let scenes: Vec<_> = app.scene_menu.scenes().collect();
     answer(StatusCode::OK, &json!({ "running": app.scene_name, "pages_may_change": app.scene_menu.is_open(), "scenes": scenes }))
+}
+
+/// `GET /api/plan`: what the running scene models, by which methods, with which errors and costs, and why.
+pub(super) async fn plan(State(app): State<Arc<App>>) -> Response {
+    answer(StatusCode::OK, &json!(*app.explanation))
 }
 
 /// `GET /api/scenes/NAME/picture`: a picture of a built-in scene.

@@ -3,8 +3,8 @@
 use super::builtin::{BUILT_IN, BuiltIn};
 use prairie_core::bend::Scheme;
 use prairie_core::scene::{
-    BladeIntegrator, BladeShape, FlowerShape, LagWay, PlantCover, PrimitiveIntensity, Scene, WindBoundary, WindMethod, WindTerrain,
-    WindTiling,
+    BladeIntegrator, BladeShape, FlowerShape, LagWay, ObjectContact, PlantCover, PrimitiveIntensity, Scene, TreeShape, WindBoundary,
+    WindMethod, WindTerrain, WindTiling,
 };
 use serde::Serialize;
 use std::sync::LazyLock;
@@ -92,7 +92,7 @@ fn shown(scene: &Scene) -> Vec<String> {
 type Method = (&'static str, fn(&Scene) -> bool);
 
 /// Methods other than the default ones.
-const METHODS: [Method; 21] = [
+const METHODS: [Method; 23] = [
     ("wind by stable fluids (Stam 1999; Zhang §2.3)", |scene| scene.wind.method == WindMethod::StableFluids),
     ("one box of wind for all patches, at random offsets (Zhang §5.1)", |scene| scene.wind.tiling == WindTiling::Patch),
     ("one box of wind that follows the objects", |scene| scene.wind.tiling == WindTiling::Follow),
@@ -106,12 +106,16 @@ const METHODS: [Method; 21] = [
     ("bend waves by Verlet's scheme (Chen & Johan 2010, §4.4)", |scene| scene.bend.scheme == Scheme::Verlet),
     ("bend waves by an implicit scheme", |scene| scene.bend.scheme == Scheme::Implicit),
     ("bend waves by Fourier modes, exact in time", |scene| scene.bend.scheme == Scheme::Modal),
+    ("contact interpolated between corners (Chen & Johan 2010, §6)", |scene| scene.bend.object_contact == ObjectContact::Interpolated),
     ("segments that repeat earlier states (Chen & Johan 2010, Eq. 7)", |scene| scene.plants.lag == LagWay::History),
     ("blades by Verlet's scheme (Zhang, Eq. 7)", |scene| scene.plants.integrator == BladeIntegrator::Verlet),
     ("blades from an alpha texture (Zhang, Fig. 5)", |scene| scene.plants.blade_shape == BladeShape::Textured),
     ("flowers as squares with six textures (Zhang §3.3)", |scene| scene.plants.flower_shape == FlowerShape::Textured),
     ("models that IDs of the covering map name (Zhang, Table 2)", |scene| !scene.models.is_empty()),
     ("snow that wheels and feet press (Sumner et al. 1999)", |scene| scene.snow.lies()),
+    ("trees of trunk, limbs and twigs that bend (Runions et al. 2007; Endo et al. 2003)", |scene| {
+        scene.plants.tree_shape == TreeShape::Grown
+    }),
     ("shells (Bakay 2003)", |scene| scene.plants.cover == PlantCover::Shells),
     ("a race through gates, against a ghost (Chen & Johan 2010, §7)", |scene| !scene.race.gates.is_empty()),
 ];

@@ -2,15 +2,16 @@
 
 use super::builtin::BuiltIn;
 use super::error::{FaultyScene, SceneError};
+use super::loaded::{LoadedScene, OpenScene};
 use crate::escaped::escaped;
 use crate::file;
 use crate::objects::built_in_models;
 use crate::objects::gltf::{self, Model};
 use crate::settings_error::SettingsError;
-use crate::world::{self, Maps};
+use crate::world;
 use prairie_core::grass::wind_drawing::{WindDrawing, WindDrawings};
 use prairie_core::plant::growth::NutrientMap;
-use prairie_core::scene::{Positions, Scene, SceneFault, VehicleKind, WindShape, parse, parse_underbrush, parse_with};
+use prairie_core::scene::{Positions, Scene, SceneFault, VehicleKind, WindShape, parse, parse_underbrush, parse_with, stated_fields};
 use prairie_core::terrain::{
     Cover, CoverMap, HeightMap, MODEL_BOXES_LIMIT, MODEL_PIXELS_LIMIT, MapError, clear_under_models, has_too_many_models,
 };
@@ -33,46 +34,21 @@ const DRAWING_LIMIT: u64 = 4 << 20;
 /// Lowest and highest allowed elevation (m).
 const ELEVATION_RANGE_M: [f32; 2] = [-20_000.0, 20_000.0];
 
-/// A checked scene with its maps and models.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LoadedScene {
-    /// Name in links: that of a built-in scene, or of the scene file without folder and extension.
-    pub name: String,
-    /// The scene without paths, as sent to clients.
-    pub scene: Scene,
-    /// Height map (PNG file).
-    pub height_png: Vec<u8>,
-    /// Covering map (PNG file).
-    pub covering_png: Vec<u8>,
-    /// Nutrient map (PNG file); empty if the nutrients are generated.
-    pub nutrient_png: Vec<u8>,
-    /// Decoded height map.
-    pub height: HeightMap,
-    /// Decoded covering map, cleared under the models.
-    pub cover: CoverMap,
-    /// Decoded nutrient map; `None` if the nutrients are generated.
-    pub nutrients: Option<Arc<NutrientMap>>,
-    /// Pictures of the drawn winds, by the numbers that replace their file names in the scene.
-    pub drawings: WindDrawings,
-    /// Models of vehicles from glTF files, where other kinds use the built-in model, and those of the covering map.
-    pub models: Vec<(ModelUse, Mesh)>,
-    /// Files that were read, the scene file first; empty for a built-in scene.
-    pub files: Vec<PathBuf>,
-}
-
-impl LoadedScene {
-    /// The maps from which the world is built.
-    pub fn maps(&self) -> Maps {
-        Maps { height: self.height.clone(), cover: self.cover.clone(), drawings: self.drawings.clone(), nutrients: self.nutrients.clone() }
-    }
-}
-
-/// Loads a built-in scene by name, or a scene file by path, with its maps and models.
+/// Loads a built-in scene by name, or a scene file by path, with its maps and models. Settings that its tolerances and budgets leave open are
+/// [planned](crate::plan), which may take a minute the first time.
 ///
 /// # Errors
 /// [`SceneError`]: the name is unknown, the file cannot be read, or it contains faults. All faults of the scene file are reported at once; if there
 /// are none, those of its underbrush file; if there are none, those of its maps and models.
 pub fn load(name_or_path: impl AsRef<OsStr>) -> Result<LoadedScene, SceneError> {
+    Ok(load_open(name_or_path)?.planned())
+}
+
+/// Loads a scene as its file has it, without a plan.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_open(name_or_path: impl AsRef<OsStr>) -> Result<OpenScene, SceneError> {
     let name = name_or_path.as_ref();
     if let Some(built_in) = name.to_str().and_then(BuiltIn::find) {
         return load_text(built_in.name, built_in.text, Source::BuiltIn(built_in));
@@ -86,8 +62,9 @@ pub fn load(name_or_path: impl AsRef<OsStr>) -> Result<LoadedScene, SceneError> 
     let text = file::read(path, SCENE_LIMIT).and_then(utf8).map_err(unreadable)?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let source = Source::Folder { folder, read: RefCell::new(vec![path.to_owned()]) };
-    let loaded = load_text(&escaped(name), &text, source)?;
-    Ok(LoadedScene { name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(), ..loaded })
+    let mut open = load_text(&escaped(name), &text, source)?;
+    open.loaded.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(open)
 }
 
 fn utf8(bytes: Vec<u8>) -> Result<String, String> {
@@ -198,7 +175,7 @@ fn parse_scene(file: &str, text: &str, source: &Source) -> Result<Scene, SceneEr
     parse_with(text, species).map_err(|faults| faulty(file, text, faults))
 }
 
-fn load_text(file: &str, text: &str, source: Source) -> Result<LoadedScene, SceneError> {
+fn load_text(file: &str, text: &str, source: Source) -> Result<OpenScene, SceneError> {
     let mut scene = parse_scene(file, text, &source)?;
     let mut faults = Vec::new();
     let positions = LazyCell::new(|| Positions::new(text));
@@ -240,7 +217,7 @@ fn load_text(file: &str, text: &str, source: Source) -> Result<LoadedScene, Scen
     for path in [&mut terrain.height_map, &mut terrain.covering_map, &mut growth.nutrient_map, underbrush_file] {
         path.clear();
     }
-    Ok(LoadedScene {
+    let loaded = LoadedScene {
         name: file.to_owned(),
         scene,
         height_png,
@@ -252,7 +229,9 @@ fn load_text(file: &str, text: &str, source: Source) -> Result<LoadedScene, Scen
         drawings,
         models: loaded_models,
         files: source.into_files(),
-    })
+        explanation: Arc::default(),
+    };
+    Ok(OpenScene { loaded, stated: stated_fields(text) })
 }
 
 /// Fields that name a model, each with what it names. Clients get the models as meshes, without the file names.

@@ -4,8 +4,10 @@ mod builtin;
 mod catalogue;
 mod create;
 mod error;
+mod explanation;
 mod fault_report;
 mod load;
+mod loaded;
 
 pub mod maps;
 mod message;
@@ -14,9 +16,12 @@ mod report;
 pub use catalogue::{SceneDescription, catalogue, picture};
 pub use create::{CreateError, create};
 pub use error::{FaultyScene, SceneError};
+pub(crate) use explanation::millis;
+pub use explanation::{Explanation, ExplanationRow};
 #[cfg(test)]
 pub(crate) use load::MAP_LIMIT;
-pub use load::{LoadedScene, load, most_similar};
+pub use load::{load, load_open, most_similar};
+pub use loaded::{LoadedScene, OpenScene};
 pub use report::{Report, check};
 
 /// Names and summaries of the built-in scenes, the default first.

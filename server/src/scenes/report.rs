@@ -1,7 +1,8 @@
 //! Summary of a valid scene for `prairie check`.
 
 use super::error::SceneError;
-use super::load::{LoadedScene, load};
+use super::load::load_open;
+use super::loaded::LoadedScene;
 use crate::escaped::escaped;
 use prairie_core::scene::VehicleKind;
 use prairie_core::terrain::{Cover, model_boxes};
@@ -19,9 +20,9 @@ pub struct Report {
 /// Loads and summarises a scene.
 ///
 /// # Errors
-/// As [`load`].
+/// As [`load`](super::load).
 pub fn check(name_or_path: impl AsRef<OsStr>) -> Result<Report, SceneError> {
-    Ok(Report { name: escaped(&name_or_path), loaded: load(name_or_path)? })
+    Ok(Report { name: escaped(&name_or_path), loaded: load_open(name_or_path)?.loaded })
 }
 
 impl fmt::Display for Report {

@@ -39,6 +39,11 @@ impl CanopyCover {
         Self { columns: [nx, nz], spacing_m: [hx, hz], covered: covered.collect(), upright: vec![(0.0, 0.0); nx * nz] }
     }
 
+    /// The cover of each column, x fastest, where no object has bent the grass.
+    pub(super) fn at_rest(&self) -> impl Iterator<Item = f32> + '_ {
+        self.covered.iter().copied()
+    }
+
     /// The cover of each column, x fastest, reduced where objects have bent the grass. Grass that leans with the wind counts as upright.
     ///
     /// A plant bent by θ has the relative height cos θ, here `1 − θ²/2`, which is 0 from 81° on.

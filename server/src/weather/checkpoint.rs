@@ -58,7 +58,7 @@ impl Weather {
     /// # Errors
     /// When the solver rejects the scene's settings, or the state is that of another box.
     pub fn restored(scene: &Scene, height: &HeightMap, cover: &CoverMap, state: &WeatherState) -> Result<Self, WeatherRestoreError> {
-        let mut weather = Self::after(scene, height, cover, 0).map_err(|error: WeatherError| error.in_settings(scene))?;
+        let mut weather = Self::after(scene, height, cover, (0, 0.0)).map_err(|error: WeatherError| error.in_settings(scene))?;
         weather.air.restore(&state.air)?;
         (weather.resets, weather.turbulence) = (state.resets, state.turbulence);
         let (courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps) = state.report;

@@ -4,7 +4,7 @@ use super::box_terrain::BoxTerrain;
 use prairie_core::scene::{Scene, WindTiling};
 use prairie_core::terrain::{Cover, CoverMap, HeightMap, ModelBox, model_boxes};
 use prairie_wind::solids::DragBody;
-use prairie_wind::{Air, Body, Config, Pressure, SolidError};
+use prairie_wind::{Air, Body, Config, Pressure, Real, SolidError};
 use std::f32::consts::FRAC_PI_4;
 
 /// Lower and upper end and diameter of a mean crown, relative to the height of the tree.
@@ -35,10 +35,16 @@ impl FixedSolids {
     }
 
     /// Puts the land and the drag into air at rest. Land that is an obstacle is immersed for the direct pressure solver, and solid cells for others.
-    pub(super) fn immerse(&self, air: &mut Air<f32>, config: &Config, terrain: &BoxTerrain, height: &HeightMap) -> Result<(), SolidError> {
+    pub(super) fn immerse<R: Real>(
+        &self,
+        air: &mut Air<R>,
+        config: &Config,
+        terrain: &BoxTerrain,
+        height: &HeightMap,
+    ) -> Result<(), SolidError> {
         match (terrain.is_solid(), config.pressure) {
             (true, Pressure::Direct) => air.set_walls(|position_m| terrain.distance_m(position_m, height), |_| [0.0; 3])?,
-            (true, _) => air.set_solid(|position_m| terrain.contains(position_m, config.spacing_m))?,
+            (true, _) => air.set_solid(|at_m| terrain.contains(at_m.map(|m| m.wide() as f32), config.spacing_m))?,
             (false, _) => {}
         }
         air.set_drag(&self.drag)

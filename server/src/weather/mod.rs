@@ -5,6 +5,8 @@ mod canopy_cover;
 mod carrier;
 mod checkpoint;
 mod fixed_solids;
+pub(crate) mod pilot;
+mod rest;
 mod settings;
 mod vehicles;
 
@@ -24,13 +26,12 @@ use prairie_core::terrain::{CoverMap, HeightMap, KindMap};
 use prairie_core::wind::WindField;
 use prairie_core::wire::{Shape, TurbulenceState};
 use prairie_wind::state::MAX_SUBSTEPS;
-use prairie_wind::{Air, Body, Config, ConfigError, Method, SolidError, StepError, StepReport};
+use prairie_wind::{Air, Body, Config, ConfigError, Jet, Method, Real, SolidError, StepError, StepReport};
+use rest::Rest;
 use settings::settings;
 use std::sync::Arc;
 use vehicles::Vehicles;
 
-/// Minimum duration of a solver step (s). A step is the smallest whole number of ticks that takes at least this long.
-const STEP_SECS: f32 = 0.05;
 /// Rate at which the wind is released to the rest of the world and to clients (Hz), rounded to whole solver steps.
 const FRAME_HZ: f32 = 6.0;
 /// Cell steps of the solver's warm-up, so that there are gusts from the start; and the largest number of warm-up steps.
@@ -41,6 +42,7 @@ const WARM_UP_STEPS: usize = 120;
 pub struct Weather {
     air: Air<f32>,
     method: Method,
+    rest: Rest,
     config: Config,
     tiling: WindTiling,
     ticks_per_step: u64,
@@ -109,12 +111,11 @@ impl Weather {
     /// # Errors
     /// [`WeatherError`] when the solver rejects the scene's settings.
     pub fn new(scene: &Scene, height: &HeightMap, cover: &CoverMap) -> Result<Self, WeatherError> {
-        let cells: usize = settings(scene).1.cells.iter().product();
-        Self::after(scene, height, cover, (WARM_UP_CELL_STEPS / cells).clamp(1, WARM_UP_STEPS))
+        Self::after(scene, height, cover, warm_up(scene))
     }
 
-    /// The wind of `scene` over its terrain, after a number of steps.
-    fn after(scene: &Scene, height: &HeightMap, cover: &CoverMap, steps: usize) -> Result<Self, WeatherError> {
+    /// The wind of `scene` over its terrain, after a number of steps of a duration (s).
+    fn after(scene: &Scene, height: &HeightMap, cover: &CoverMap, (steps, warm_up_secs): (usize, f64)) -> Result<Self, WeatherError> {
         let (method, config) = settings(scene);
         let terrain = BoxTerrain::new(scene, height);
         let solids = FixedSolids::new(scene, height, cover, &terrain);
@@ -122,13 +123,14 @@ impl Weather {
         let (ticks_per_step, step_secs) = step_interval(scene);
         let mut report = StepReport::default();
         for step in 0..steps {
-            air.set_intensity_secs(step_secs * (step as f64 - steps as f64));
-            report = air.step(step_secs, &[])?;
+            air.set_intensity_secs(warm_up_secs * (step as f64 - steps as f64));
+            report = air.step(warm_up_secs, &[])?;
         }
         let mut weather = Self {
             canopy: config.canopy.map(|canopy| CanopyCover::new(scene, cover, canopy.height_m)),
             tiling: scene.wind.tiling,
             carrier: Carrier::new(&config),
+            rest: Rest::new(&config, scene.stream.wind_error_m_per_s),
             turbulence: TurbulenceState::default(),
             field: WindField::still(scene, Arc::new(KindMap::new(scene, cover))),
             frame: Arc::default(),
@@ -137,7 +139,7 @@ impl Weather {
             method,
             config,
             ticks_per_step,
-            ticks_per_frame: ticks_per_step * (scene.tick_hz / (ticks_per_step as f32 * FRAME_HZ)).round().max(1.0) as u64,
+            ticks_per_frame: frame_interval(scene, ticks_per_step),
             step_secs,
             report,
             terrain,
@@ -156,21 +158,47 @@ impl Weather {
         }
         // In a box that is tiled by patch, a jet would appear in every patch.
         let motions = if self.tiling == WindTiling::Patch { &[] } else { motions };
+        let ground_m = |motion: &Motion| self.terrain.zero_m(height.height_m(motion.to.position_m[0], motion.to.position_m[2]));
+        let in_box = |motion: &Motion| Motion { velocity_m_per_s: self.terrain.velocity_in_box(motion, height), ..*motion };
+        let jets: Vec<_> = motions.iter().filter_map(|motion| self.vehicles.jet(&in_box(motion), ground_m(motion))).collect();
+        self.bodies.truncate(self.solids.bodies.len());
+        self.bodies.extend(motions.iter().filter_map(|motion| self.vehicles.body(&in_box(motion), ground_m(motion))));
+        if !self.rests(&jets) {
+            self.advance(tick, motions, &jets, height, grass);
+        }
+        if tick.is_multiple_of(self.ticks_per_frame) {
+            self.release(tick);
+        }
+    }
+
+    /// Whether the air is at rest and nothing drives it. Air that is nearly at rest comes to rest.
+    fn rests(&mut self, jets: &[Jet]) -> bool {
+        if !jets.is_empty() || !self.rest.is_undriven(&self.bodies) {
+            return false;
+        }
+        let speeds_m_per_s = self.air.diagnostics().max_speed_m_per_s;
+        if !self.rest.holds(speeds_m_per_s) {
+            return false;
+        }
+        if speeds_m_per_s != [0.0; 3] {
+            self.air.set_velocity(|_| [0.0; 3]);
+            self.report = StepReport::default();
+        }
+        true
+    }
+
+    /// Takes a step of the solver.
+    fn advance(&mut self, tick: u64, motions: &[Motion], jets: &[Jet], height: &HeightMap, grass: &Field) {
         if self.tiling == WindTiling::Follow {
             self.follow(motions);
         }
         if let (Some(canopy), WindTiling::Box | WindTiling::Follow) = (&mut self.canopy, self.tiling) {
             self.air.set_canopy_fraction(canopy.fractions(grass));
         }
-        let ground_m = |motion: &Motion| self.terrain.zero_m(height.height_m(motion.to.position_m[0], motion.to.position_m[2]));
-        let in_box = |motion: &Motion| Motion { velocity_m_per_s: self.terrain.velocity_in_box(motion, height), ..*motion };
-        let jets: Vec<_> = motions.iter().filter_map(|motion| self.vehicles.jet(&in_box(motion), ground_m(motion))).collect();
-        self.bodies.truncate(self.solids.bodies.len());
-        self.bodies.extend(motions.iter().filter_map(|motion| self.vehicles.body(&in_box(motion), ground_m(motion))));
         self.air.set_bodies(&self.bodies).expect("bodies that may not be set are left out");
         // The intensities follow the world's time, so that they neither run during the warm-up nor start again after a failed step.
         self.air.set_intensity_secs(self.step_secs * ((tick / self.ticks_per_step) as f64 - 1.0));
-        match self.air.step(self.step_secs, &jets) {
+        match self.air.step(self.step_secs, jets) {
             Ok(report) => self.report = report,
             // The state is invalid: the air restarts from the mean wind.
             Err(_) => {
@@ -181,9 +209,6 @@ impl Weather {
         }
         let velocities = self.velocities();
         self.carrier.advance(&mut self.turbulence, &velocities, self.step_secs);
-        if tick.is_multiple_of(self.ticks_per_frame) {
-            self.release(tick);
-        }
     }
 
     /// Puts the seam of the periodic box on the side opposite to the centre of all objects.
@@ -260,13 +285,13 @@ impl Weather {
 }
 
 /// The solver in its initial state, around all that does not move.
-fn initial_air(
+fn initial_air<R: Real>(
     method: Method,
     config: &Config,
     terrain: &BoxTerrain,
     solids: &FixedSolids,
     height: &HeightMap,
-) -> Result<Air<f32>, WeatherError> {
+) -> Result<Air<R>, WeatherError> {
     let mut air = Air::new(method, config)?;
     solids.immerse(&mut air, config, terrain, height)?;
     air.set_bodies(&solids.bodies)?;
@@ -275,8 +300,24 @@ fn initial_air(
 
 /// Ticks per solver step, and their duration (s).
 fn step_interval(scene: &Scene) -> (u64, f64) {
-    let ticks = (STEP_SECS * scene.tick_hz).ceil().max(1.0);
+    let ticks = (scene.wind.step_secs * scene.tick_hz).ceil().max(1.0);
     (ticks as u64, (ticks * scene.dt_secs()).into())
+}
+
+/// Ticks per frame of a solver whose step takes `ticks_per_step`.
+fn frame_interval(scene: &Scene, ticks_per_step: u64) -> u64 {
+    ticks_per_step * (scene.tick_hz / (ticks_per_step as f32 * FRAME_HZ)).round().max(1.0) as u64
+}
+
+/// Steps of the warm-up, and their duration (s): those of the scene's duration, or [`WARM_UP_STEPS`] of the solver, fewer of many cells.
+fn warm_up(scene: &Scene) -> (usize, f64) {
+    let (_, step_secs) = step_interval(scene);
+    let (cells, secs): (usize, f64) = (scene.wind.cells.iter().map(|n| *n as usize).product(), scene.wind.warm_up_secs.into());
+    if secs > 0.0 {
+        let steps = (secs / step_secs).round().max(1.0);
+        return (steps as usize, secs / steps);
+    }
+    ((WARM_UP_CELL_STEPS / cells).clamp(1, WARM_UP_STEPS), step_secs)
 }
 
 #[cfg(test)]

@@ -16,7 +16,6 @@ pub(super) const ROUGHNESS_M: f32 = 0.05;
 /// The solver's method and settings for `scene`.
 pub(super) fn settings(scene: &Scene) -> (Method, Config) {
     let wind = &scene.wind;
-    let [hx, hy, hz] = wind.spacing_m;
     let config = Config {
         cells: wind.cells.map(|n| n as usize),
         spacing_m: wind.spacing_m,
@@ -32,13 +31,13 @@ pub(super) fn settings(scene: &Scene) -> (Method, Config) {
         pressure: pressure(wind),
         viscosity_m2_per_s: wind.viscosity_m2_per_s,
         mean_wind_m_per_s: [wind.mean_m_per_s[0], 0.0, wind.mean_m_per_s[1]],
-        profile: Profile::Log { roughness_m: ROUGHNESS_M, reference_m: 5.0 * hy },
+        profile: Profile::Log { roughness_m: ROUGHNESS_M, reference_m: wind.reference_m() },
         relaxation_per_s: wind.mean_rate_per_s,
         body_force_m_per_s2: [wind.body_force_m_per_s2[0], 0.0, wind.body_force_m_per_s2[1]],
         gusts: Gusts {
             number: wind.sources as usize,
             strength_m_per_s: wind.source_m_per_s,
-            radius_m: [1.75 * hx, 2.5 * hy, 1.75 * hz],
+            radius_m: wind.gust_radius_m(),
             ..Gusts::default()
         },
         primitives: wind.primitives.iter().map(primitive).collect(),

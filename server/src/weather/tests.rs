@@ -298,3 +298,54 @@ fn a_hurricane_is_sent_as_it_is() {
         assert!(fastest > 35.0 && apart <= 1.0001 * error && apart > 0.9 * error, "{fastest} m/s, off by {apart} m/s");
     }
 }
+
+/// The air of the meadow in which nothing blows, and of one in which a helicopter hovers now and then.
+fn calm() -> (Weather, Scene, Maps) {
+    let (mut scene, maps) = meadow();
+    (scene.wind.cells, scene.wind.spacing_m) = ([16, 8, 16], [16.0, 2.0, 16.0]);
+    (scene.wind.mean_m_per_s, scene.wind.sources) = ([0.0; 2], 0);
+    (Weather::new(&scene, &maps.height, &maps.cover).unwrap(), scene, maps)
+}
+
+#[test]
+fn still_air_takes_no_step_and_a_step_would_change_nothing() {
+    let (mut weather, scene, maps) = calm();
+    let grass = grass(&scene);
+    let time_secs = weather.air.time_secs();
+    (1..=60).for_each(|tick| weather.step(tick, &[], &maps.height, &grass));
+    assert_eq!(weather.air.time_secs(), time_secs, "the solver has taken a step");
+    assert_eq!(weather.frame().tick, 60 - 60 % weather.ticks_per_frame, "frames go on");
+    weather.air.step(weather.step_secs, &[]).unwrap();
+    assert!(weather.air.cell_velocities().all(|velocity| velocity == Vec3::ZERO), "a step moves still air");
+}
+
+#[test]
+fn air_that_was_stirred_comes_to_rest() {
+    let (mut weather, scene, maps) = calm();
+    let grass = grass(&scene);
+    (1..=120).for_each(|tick| weather.step(tick, &[hovering([0.0; 3])], &maps.height, &grass));
+    let stirred = weather.air.diagnostics().max_speed_m_per_s;
+    assert!(stirred.iter().sum::<f64>() > 0.5, "{stirred:?}");
+    let bound_m_per_s = f64::from(0.1 * scene.stream.wind_error_m_per_s);
+    let rests = (121..=60 * 600).find(|&tick| {
+        let before = weather.air.diagnostics().max_speed_m_per_s.iter().sum::<f64>();
+        weather.step(tick, &[], &maps.height, &grass);
+        let is_zero = weather.air.diagnostics().max_speed_m_per_s == [0.0; 3];
+        assert!(!is_zero || before <= bound_m_per_s, "air of {before} m/s is stopped");
+        is_zero
+    });
+    assert!(rests.is_some(), "still at {:?}", weather.air.diagnostics().max_speed_m_per_s);
+}
+
+#[test]
+fn wind_never_rests() {
+    let gusts = blown(|scene| (scene.wind.mean_m_per_s, scene.wind.dust.release_per_s) = ([0.0; 2], 0.0), 12).unwrap();
+    let mean = blown(|scene| (scene.wind.sources, scene.wind.dust.release_per_s) = (0, 0.0), 12).unwrap();
+    let lid = |scene: &mut Scene| {
+        (scene.wind.mean_m_per_s, scene.wind.sources, scene.wind.dust.release_per_s) = ([0.0; 2], 0, 0.0);
+        (scene.wind.faces.top, scene.wind.faces.lid_m_per_s) = (WindBoundary::Lid, [3.0, 0.0, 0.0]);
+    };
+    for weather in [gusts, mean, blown(lid, 12).unwrap()] {
+        assert!(!weather.rest.is_undriven(&[]));
+    }
+}

@@ -11,6 +11,9 @@ fn help_texts_and_messages_equal_the_stored_ones() {
     if cfg!(feature = "rerun") {
         cases.skip("tests/cli/snapshots/without_rerun.trycmd");
     }
+    if !cfg!(feature = "charts") {
+        cases.skip("tests/cli/snapshots/charts.trycmd");
+    }
     if !cfg!(feature = "picture") {
         cases.skip("tests/cli/snapshots/picture.trycmd");
     }
@@ -22,7 +25,8 @@ fn the_help_of_every_command_is_stored() {
     let (_, commands) = help.split_once("Commands:\n").unwrap();
     let names: Vec<_> = commands.lines().map_while(|line| line.split_whitespace().next()).filter(|name| *name != "help").collect();
     assert!(names.contains(&"serve") && names.contains(&"man"), "{names:?}");
-    let stored = ["help", "picture"].map(|file| std::fs::read_to_string(format!("tests/cli/snapshots/{file}.trycmd")).unwrap()).concat();
+    let stored =
+        ["help", "picture", "charts"].map(|file| std::fs::read_to_string(format!("tests/cli/snapshots/{file}.trycmd")).unwrap()).concat();
     for name in names {
         assert!(stored.contains(&format!("\n$ prairie {name} --help\n")), "{name}");
     }

@@ -6,6 +6,7 @@ mod common;
 #[cfg(feature = "acme")]
 mod acme;
 mod addresses;
+mod charts;
 mod drawing;
 mod floods;
 mod http;

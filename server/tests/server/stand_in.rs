@@ -122,5 +122,6 @@ pub(crate) fn scene() -> LoadedScene {
         drawings: Default::default(),
         models: Vec::new(),
         files: Vec::new(),
+        explanation: Default::default(),
     }
 }

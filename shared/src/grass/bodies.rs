@@ -4,7 +4,7 @@ use super::contact::{Contact, SETTLING_M_PER_S};
 use super::grass_properties::GrassProperties;
 use super::swept_footprint::SweptFootprint;
 use crate::body::{Body, BodyPose, Motion, Prism, part_code};
-use crate::scene::{Objects, Tread, VehicleKind};
+use crate::scene::{ObjectContact, Objects, Tread, VehicleKind};
 use crate::terrain::HeightMap;
 
 /// Speed of a foot that is set down (m/s).
@@ -14,6 +14,7 @@ const TREADING_M_PER_S: f32 = 1.5;
 #[derive(Clone, Debug)]
 pub(super) struct Bodies {
     kinds: Vec<(Body, Tread)>,
+    contact: ObjectContact,
 }
 
 /// A prism low above the terrain.
@@ -30,9 +31,9 @@ struct LowPrism<'a> {
 
 impl Bodies {
     /// The bodies of a scene's objects, in the order of [`VehicleKind::ALL`]; a kind without a shape does not touch the grass.
-    pub(super) fn new(bodies: &[Body], objects: &Objects) -> Self {
+    pub(super) fn new(bodies: &[Body], objects: &Objects, contact: ObjectContact) -> Self {
         let body = |(at, kind)| (bodies.get(at).cloned().unwrap_or_default(), objects.tread(kind));
-        Self { kinds: VehicleKind::ALL.into_iter().enumerate().map(body).collect() }
+        Self { kinds: VehicleKind::ALL.into_iter().enumerate().map(body).collect(), contact }
     }
 
     /// Whether a rotor of this kind blows air down.
@@ -59,6 +60,7 @@ impl Bodies {
                 settling_m_per_s: if stands { TREADING_M_PER_S } else { SETTLING_M_PER_S },
                 flattened_fraction: if prism.bears_weight { tread.lays_share } else { 0.0 },
                 is_at_rest: motion.is_at_rest,
+                method: self.contact,
             })
         })
     }

@@ -1,12 +1,14 @@
 //! Contact of moving objects with the grass.
 
 use super::bending::{HELD_RAD_PER_S, bend_after_rad, bending_speed_rad_per_s, direction};
+use super::corner_contact::CornerVelocities;
 use super::grass_state::CellState;
 use super::stroke::{Pressed, Stroke};
 use super::swept_footprint::{Leg, SweptFootprint};
 use super::vector::{length, unit};
 use crate::bend::Bend;
 use crate::grid::PatchLayout;
+use crate::scene::ObjectContact;
 
 /// Speed below which an object counts as standing still (m/s).
 pub const STANDSTILL_M_PER_S: f32 = 0.05;
@@ -29,12 +31,40 @@ pub struct Contact {
     pub flattened_fraction: f32,
     /// Whether the object is at rest. Its whole bend then counts as flattened grass, and its patches may sleep.
     pub is_at_rest: bool,
+    /// How the velocity of each cell is found. Below an object at rest it is exact.
+    pub method: ObjectContact,
 }
 
 impl Contact {
     /// The strokes of a step of `dt_secs`, one for each leg.
     pub fn strokes<'a>(&'a self, layout: &'a PatchLayout, dt_secs: f32) -> impl Iterator<Item = Stroke<'a>> {
-        self.swept.legs().map(move |leg| Stroke::new(&leg.cover(), layout, self.is_at_rest, self.rule(leg, layout.cell_m, dt_secs)))
+        self.swept.legs().map(move |leg| {
+            let area = leg.cover();
+            match self.method {
+                ObjectContact::Interpolated if !self.is_at_rest => Stroke::new(&area, layout, false, self.interpolated_rule(&leg, dt_secs)),
+                _ => Stroke::new(&area, layout, self.is_at_rest, self.rule(leg, layout.cell_m, dt_secs)),
+            }
+        })
+    }
+
+    /// How grass yields to one leg by the velocities at the corners of its area: Eq. (12) for the whole leg, in one step.
+    fn interpolated_rule<'a>(
+        &'a self,
+        leg: &Leg<'a>,
+        dt_secs: f32,
+    ) -> impl Fn([f32; 2], &mut CellState) -> Option<Pressed> + Send + Sync + use<'a> {
+        let leg_secs = leg.fraction * dt_secs;
+        let velocities = CornerVelocities::new(self, leg, leg_secs);
+        move |at_m, cell| {
+            let velocity = velocities.at(at_m)?;
+            let (speed, direction) = (length(velocity), unit(velocity)?);
+            let terrain_rad = cell.limit_rad(direction);
+            let (theta, limit) = (cell.bend().theta, terrain_rad.min(self.slip_bend_rad));
+            let omega = bending_speed_rad_per_s(speed, theta, self.strike_height_m);
+            let theta = if theta >= limit { theta.min(terrain_rad) } else { limit.min(theta + omega * leg_secs) };
+            let held = omega.max(HELD_RAD_PER_S);
+            Some(Pressed { bend: Bend { theta, omega: direction.map(|d| d * held) }, flattened_fraction: self.flattened_fraction })
+        }
     }
 
     /// How grass yields to one leg.

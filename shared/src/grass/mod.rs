@@ -11,6 +11,7 @@ mod camera;
 mod causes;
 mod codes;
 pub mod contact;
+mod corner_contact;
 pub mod flattened;
 pub mod footprint;
 pub mod grass_properties;

@@ -87,7 +87,7 @@ impl BendSimulation {
             height,
             properties: GrassProperties::new(scene, cover),
             gusts: GustNoise::new(scene),
-            bodies: Bodies::new(bodies, &scene.objects),
+            bodies: Bodies::new(bodies, &scene.objects, settings.object_contact),
             winds: PrescribedWinds::new(scene, drawings),
             flattened: FlattenedGrass::new(layout, scene.grass.laid_recovery_secs, tile_limit),
             snow: SnowField::new(layout, &scene.snow, tile_limit),

@@ -9,6 +9,9 @@ use super::vector::length;
 use crate::body::{BodyPose, Motion, Prism};
 use std::f32::consts::{PI, TAU};
 
+/// Cosine of the largest angle (2°) between parallel sides.
+const PARALLEL: f32 = 0.9994;
+
 /// Area that a convex prism sweeps over.
 #[derive(Clone, Debug)]
 pub struct SweptFootprint {
@@ -154,9 +157,27 @@ impl Leg<'_> {
         (first < last).then(|| {
             let middle = 0.5 * (first + last);
             let local_m = [0, 1].map(|axis| enters[axis] + (leaves[axis] - enters[axis]) * middle);
-            let ([from_x, from_z], [to_x, to_z]) = (self.from.world(local_m), self.to.world(local_m));
-            Passage { fraction: last - first, moves_m: [to_x - from_x, to_z - from_z], local_m }
+            Passage { fraction: last - first, moves_m: self.displacement_m(local_m), local_m }
         })
+    }
+
+    /// Displacement of a point of the prism over the whole leg (m), as a vector on the ground.
+    pub fn displacement_m(&self, local_m: [f32; 2]) -> [f32; 2] {
+        let ([from_x, from_z], [to_x, to_z]) = (self.from.world(local_m), self.to.world(local_m));
+        [to_x - from_x, to_z - from_z]
+    }
+
+    /// A position of the world in the level frame half-way (m).
+    pub fn local_m(&self, at_m: [f32; 2]) -> [f32; 2] {
+        let (enters, leaves) = (self.from.local(at_m), self.to.local(at_m));
+        [0, 1].map(|axis| 0.5 * (enters[axis] + leaves[axis]))
+    }
+
+    /// Whether a side of the area, in axes of the world, belongs to a side that is shared with another prism of the object.
+    pub fn is_seam(&self, side: &Edge) -> bool {
+        let normal = self.to_local(side.normal);
+        let is_parallel = |own: &&Edge| own.normal[0] * normal[0] + own.normal[1] * normal[1] > PARALLEL;
+        self.swept.sides.iter().filter(is_parallel).any(|own| !self.swept.rims.contains(own))
     }
 
     /// A direction of the world in the level frame half-way.

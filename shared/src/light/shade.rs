@@ -18,6 +18,12 @@ pub const SHADE_RATIO: f32 = 1.5;
 /// Length of the first step relative to the whole way: (r − 1)/(r⁸ − 1) for a ratio r.
 pub const SHADE_FIRST: f32 = 0.020_301_348;
 
+/// Distances towards the sun, relative to that over which a ray from the ground rises to the highest leaves, and weights, of the places whose leaves it meets: the Gauss
+/// quadrature of two points for their weight, 2 (1 − s), by [`leaf_area_above`].
+pub const BARE_PLACES: [f32; 2] = [0.155_051, 0.644_949];
+/// Their weights.
+pub const BARE_WEIGHTS: [f32; 2] = [0.636_083, 0.363_917];
+
 /// Lean of a blade's thirds at rest by its own weight, for a droop of 1 (rad, root mean square).
 pub const RESTING_RAD: f32 = 0.45;
 /// Farthest lean of a blade (rad).
@@ -29,6 +35,19 @@ pub const THIRD_AREAS: [f32; 3] = [0.426, 0.393, 0.181];
 pub fn leaf_area_above(height: f32) -> f32 {
     let below_top = 1.0 - height.clamp(0.0, LEAF_TOP) / LEAF_TOP;
     below_top * below_top
+}
+
+/// Mean fractions of sunlight on the upper and the lower half of what rays of the eye meet in an even sward: leaves, or the ground below. `eye_depth` is the optical depth of all leaves
+/// towards the eye, `sun_depth` towards the sun.
+///
+/// Rays of the eye end at leaf areas u above them that are distributed as K e^(−K u), K being the eye's depth, and e^(−D u) of the sunlight reaches these, D being the sun's.
+pub fn sun_on_seen(eye_depth: f32, sun_depth: f32) -> [f32; 2] {
+    let both = eye_depth + sun_depth;
+    let parted = (-both * (std::f32::consts::LN_2 / eye_depth).min(1.0)).exp();
+    let ground = (-eye_depth).exp();
+    let leaves = [1.0 - parted, parted - (-both).exp()].map(|part| part * eye_depth / both);
+    let floor = [(ground - 0.5).max(0.0), ground.min(0.5)].map(|part| part * (-sun_depth).exp());
+    std::array::from_fn(|half| 2.0 * (leaves[half] + floor[half]))
 }
 
 /// Height of blades relative to their length, and the optical depth towards the sun per leaf area index, where wind and bend field lean them by a vector (rad) and they droop
@@ -133,6 +152,31 @@ mod tests {
                 assert!((depth - wanted).abs() < 2e-3, "{depth} instead of {wanted} at {above_m} m");
             }
         }
+    }
+
+    /// Against a sum over ten thousand rays of the eye.
+    #[test]
+    fn sunlight_on_seen_leaves_is_its_mean_over_the_rays_of_the_eye() {
+        for (eye_depth, sun_depth) in [(0.3_f32, 0.5_f32), (0.6, 4.0), (1.3, 0.0), (1.5, 3.0), (8.0, 4.0), (25.0, 15.0)] {
+            for (half, found) in sun_on_seen(eye_depth, sun_depth).into_iter().enumerate() {
+                let rays = (0..5000).map(|ray| 0.5 * (half as f32 + (ray as f32 + 0.5) / 5000.0));
+                let wanted = rays.map(|rank| (-sun_depth * (-(1.0 - rank).ln() / eye_depth).min(1.0)).exp()).sum::<f32>() / 5000.0;
+                assert!((found - wanted).abs() < 1e-3, "{found} instead of {wanted} at {eye_depth}, {sun_depth}");
+            }
+        }
+    }
+
+    /// Ground before grass whose cover rises evenly, as averages over places do.
+    #[test]
+    fn two_places_find_the_shade_of_grass_on_bare_ground() {
+        let sine = 0.4_f32;
+        let column = Column { ground_m: 0.0, height_m: 0.7, depth: 3.0 };
+        let reach_m = 0.7 * LEAF_TOP * (1.0 - sine * sine).sqrt() / sine;
+        let cover = |m: f32| (m / reach_m).clamp(0.0, 1.0);
+        let steps = depth_toward_sun(|m| Column { depth: 3.0 * cover(m), ..column }, 0.0, 0.7 * LEAF_TOP, sine);
+        let places: f32 = BARE_PLACES.iter().zip(BARE_WEIGHTS).map(|(place, weight)| 3.0 * weight * cover(place * reach_m)).sum();
+        assert!((places - steps).abs() < 0.03 * steps, "{places} instead of {steps}");
+        assert!((places - 1.0).abs() < 1e-3 && (BARE_WEIGHTS.iter().sum::<f32>() - 1.0).abs() < 1e-6);
     }
 
     #[test]

@@ -19,6 +19,11 @@ pub fn relative_load(snow: &Snow, leaf_area_index: f32) -> f32 {
     held_kg_m2 / (leaf_area_index * LEAF_KG_M2)
 }
 
+/// Snow on leaves as a fraction of the most that they bear.
+pub fn load_share(snow: &Snow, leaf_area_index: f32) -> f32 {
+    if snow.leaf_load_kg_m2 > 0.0 { relative_load(snow, leaf_area_index) * LEAF_KG_M2 / snow.leaf_load_kg_m2 } else { 0.0 }
+}
+
 /// Mass of a plant with its snow, relative to its own, where the depth of the snow differs by `difference_m` from that of undisturbed snow. Twin of
 /// `laden_mass` in client-wasm/shaders/land_and_sky/snow.wgsl.
 pub fn laden_mass(relative_load: f32, depth_m: f32, difference_m: f32) -> f32 {
@@ -35,6 +40,7 @@ mod tests {
         // 0.2 mm at 120 kg/m³ on leaves of 0.4 kg/m².
         assert!((load(0.0002) - 0.024 / 0.4).abs() < 0.002, "{}", load(0.0002));
         assert!((load(0.5) - 0.3 / LEAF_KG_M2).abs() < 1e-5);
+        assert!((load_share(&Snow { depth_m: 0.5, ..Snow::default() }, 2.0) - 1.0).abs() < 1e-5);
         assert_eq!((load(0.0), relative_load(&Snow { depth_m: 0.1, ..Snow::default() }, 0.0)), (0.0, 0.0));
     }
 

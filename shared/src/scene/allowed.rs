@@ -1,10 +1,11 @@
 //! Allowed values of every field of a scene file, in one table for the parser, the reference in the README and its tests.
 
+use super::accuracy::CELLS;
 use super::objects::OBJECT_FIELDS;
 use super::{
     BladeIntegrator, BladeShape, COMPONENTS_LIMIT, ComponentKind, FlowerShape, GATES_LIMIT, LAMPS_LIMIT, LagWay, MODEL_SIDE_M,
-    MODELS_LIMIT, PlantCover, PrimitiveIntensity, PrimitiveKind, SPECIES_LIMIT, ShellExtrusion, TreeShape, WindAdvection, WindBoundary,
-    WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
+    MODELS_LIMIT, ObjectContact, PlantCover, PrimitiveIntensity, PrimitiveKind, SPECIES_LIMIT, ShellExtrusion, TreeShape, WindAdvection,
+    WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime,
 };
 use crate::bend::{Edges, GroundContact, Scheme, Seams};
 use crate::lod::shells::LAYERS_LIMIT;
@@ -61,6 +62,7 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("wind.tiling", OneOf(WindTiling::WORDS)),
     ("wind.terrain", OneOf(WindTerrain::WORDS)),
     ("wind.mean_m_per_s", Range(-40.0, 40.0)),
+    ("wind.reference_height_m", Range(0.0, 1000.0)),
     ("wind.mean_rate_per_s", Range(0.0, 10.0)),
     ("wind.viscosity_m2_per_s", Range(0.0, 100.0)),
     ("wind.canopy_drag_per_m", Range(0.0, 10.0)),
@@ -71,7 +73,11 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("wind.body_force_m_per_s2", Range(-1.0, 1.0)),
     ("wind.sources", Range(0.0, 1000.0)),
     ("wind.source_m_per_s", Range(0.0, 40.0)),
+    ("wind.source_radius_m", Range(0.0, 1000.0)),
     ("wind.turbulence", Range(0.0, 3.0)),
+    ("wind.turbulence_below_m", Range(0.0, 10_000.0)),
+    ("wind.step_secs", Range(0.004, 0.5)),
+    ("wind.warm_up_secs", Range(0.0, 60.0)),
     ("wind.method", OneOf(WindMethod::WORDS)),
     ("wind.advection", OneOf(WindAdvection::WORDS)),
     ("wind.time", OneOf(WindTime::WORDS)),
@@ -125,6 +131,7 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("bend.rest_theta_rad", Range(0.0, 0.1)),
     ("bend.rest_omega_rad_per_s", Range(0.0, 2.0)),
     ("bend.ground_contact", OneOf(GroundContact::WORDS)),
+    ("bend.object_contact", OneOf(ObjectContact::WORDS)),
     ("grass.c0_m_per_s", Range(0.0, 50.0)),
     ("grass.mu_m_per_rad", Range(0.0, 10.0)),
     ("grass.c_omega_m_per_s", Range(0.0, 50.0)),
@@ -250,6 +257,14 @@ const AFTER_OBJECTS: &[(&str, Allowed)] = &[
     ("stream.omega_error_rad_per_s", Range(0.01, 1.0)),
     ("stream.wind_error_m_per_s", Range(0.01, 1.0)),
     ("stream.dust_error", Range(0.005, 0.5)),
+    ("accuracy.wind", Text),
+    ("accuracy.bend", Text),
+    ("accuracy.blades", Text),
+    ("accuracy.picture", Range(0.0, 1.0)),
+    ("accuracy.cells", OneOf(CELLS)),
+    ("budget.server_ms", Range(0.0, 1000.0)),
+    ("budget.client_ms", Range(0.0, 1000.0)),
+    ("budget.kbit_per_s", Range(0.0, 1_000_000.0)),
 ];
 
 /// Fields that a scene file must contain; for a list of sections, each section of it.

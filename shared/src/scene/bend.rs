@@ -1,7 +1,20 @@
 //! Numerical method of the bend field: the section `[bend]`.
 
+use super::words;
 use crate::bend::{Edges, GroundContact, Rest, Scheme, Seams};
 use serde::{Deserialize, Serialize};
+
+words! {
+    /// How an object sets the bending velocity of the grass that it touches (Chen & Johan, §5.2 and §6).
+    #[derive(Default)]
+    ObjectContact {
+        /// Each cell for the time that it is within the object, with the velocity at its place: the same bend for any length of the step.
+        #[default]
+        Exact = "exact",
+        /// Velocities at the corners of the swept area, interpolated inside, for the whole step.
+        Interpolated = "interpolated",
+    }
+}
 
 /// Scheme of the bend field, coupling of its patches, boundary condition and rest tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,12 +36,16 @@ pub struct BendField {
     /// Contact of bent grass with the ground: `inelastic`, the bend stops at a right angle and loses its motion there; `none`, the wave equations alone,
     /// whose waves add up to more. Default `inelastic`.
     pub ground_contact: GroundContact,
+    /// How objects bend the grass that they touch: `exact`, each cell for the time that it is within the object; `interpolated`, as published by Chen & Johan
+    /// (2010, §6), by velocities that are found at the corners of the swept area only and interpolated inside. Default `exact`.
+    pub object_contact: ObjectContact,
 }
 
 impl Default for BendField {
     fn default() -> Self {
         let (scheme, seams, edges) = (Scheme::default(), Seams::default(), Edges::default());
-        Self { scheme, seams, edges, rest_theta_rad: 0.01, rest_omega_rad_per_s: 0.2, ground_contact: GroundContact::default() }
+        let (ground_contact, object_contact) = (GroundContact::default(), ObjectContact::default());
+        Self { scheme, seams, edges, rest_theta_rad: 0.01, rest_omega_rad_per_s: 0.2, ground_contact, object_contact }
     }
 }
 

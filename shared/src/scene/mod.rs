@@ -3,6 +3,7 @@
 //! A scene file contains only fields that differ from their defaults; the shortest one names its maps. Parsing checks every field and every
 //! combination; the world is made from a checked [`Scene`] alone.
 
+mod accuracy;
 mod allowed;
 mod bend;
 mod blade_step;
@@ -27,6 +28,7 @@ mod rain;
 mod shells;
 mod snow;
 mod species;
+mod stated;
 mod stream;
 mod template;
 mod terrain;
@@ -34,8 +36,9 @@ mod underbrush;
 mod walk;
 mod wind;
 
+pub use accuracy::{Accuracy, Budget, Tolerances};
 pub use allowed::{Allowed, FIELDS, REQUIRED};
-pub use bend::BendField;
+pub use bend::{BendField, ObjectContact};
 pub use blade_step::{BLADE_STEPS_LIMIT, GROWTH_BY_COVER, GROWTH_BY_MEADOW, GROWTH_BY_SOIL, GROWTH_BY_TUFT};
 pub use checks::limits::{AWAKE_CELLS_LIMIT, COMPONENTS_LIMIT, EXTENT_LIMIT_M, PARTS_LIMIT, SITES_LIMIT, SPECIES_LIMIT, WIND_CELLS_LIMIT};
 pub use cover_model::{CoverModel, MODEL_SIDE_M, MODELS_LIMIT};
@@ -56,6 +59,7 @@ pub use rain::Rain;
 pub use shells::{ShellExtrusion, Shells};
 pub use snow::Snow;
 pub use species::Species;
+pub use stated::stated_fields;
 pub use stream::Stream;
 pub use terrain::TerrainMaps;
 pub use underbrush::{Component, ComponentKind, Underbrush};
@@ -153,6 +157,12 @@ pub struct Scene {
     /// Largest errors of the streamed fields.
     #[serde(default)]
     pub stream: Stream,
+    /// Largest errors, from which the server plans the settings that the file does not state; empty once they are planned.
+    #[serde(default)]
+    pub accuracy: Accuracy,
+    /// Largest costs of the planned settings; empty once they are planned.
+    #[serde(default)]
+    pub budget: Budget,
 }
 
 fn default_seed() -> u64 {
@@ -192,6 +202,8 @@ impl Scene {
             light: Light::default(),
             lights: Vec::new(),
             stream: Stream::default(),
+            accuracy: Accuracy::default(),
+            budget: Budget::default(),
         }
     }
 

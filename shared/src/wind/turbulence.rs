@@ -71,7 +71,8 @@ impl Turbulence {
     /// The gusts of `scene`; none where `wind.turbulence` is 0 or the cells resolve [`SHORTEST_M`].
     pub fn new(scene: &Scene) -> Self {
         let [dx, _, dz] = scene.wind.spacing_m;
-        let longest_m = f64::from(RESOLVED_CELLS * dx.max(dz));
+        let stated_m = scene.wind.turbulence_below_m;
+        let longest_m = f64::from(if stated_m > 0.0 { stated_m } else { RESOLVED_CELLS * dx.max(dz) });
         let strength = f64::from(scene.wind.turbulence);
         if strength <= 0.0 || longest_m <= SHORTEST_M.into() {
             return Self { waves: Vec::new(), amplitude: 0.0 };

@@ -11,7 +11,7 @@ pub(crate) struct Field {
 }
 
 /// Source files and, for each struct in them, the section that it documents.
-const SOURCES: [(&str, &[(&str, &str)]); 24] = [
+const SOURCES: [(&str, &[(&str, &str)]); 25] = [
     ("mod.rs", &[("Scene", "")]),
     ("patches.rs", &[("Patches", "patches")]),
     ("terrain.rs", &[("TerrainMaps", "terrain")]),
@@ -36,10 +36,11 @@ const SOURCES: [(&str, &[(&str, &str)]); 24] = [
     ("picture.rs", &[("CameraStart", "camera"), ("Light", "light")]),
     ("lamp.rs", &[("Lamp", "lights")]),
     ("stream.rs", &[("Stream", "stream")]),
+    ("accuracy.rs", &[("Accuracy", "accuracy"), ("Budget", "budget")]),
 ];
 
 /// Sections that may occur once, without those of [`tread_sections`].
-const SECTIONS: [&str; 18] = [
+const SECTIONS: [&str; 20] = [
     "patches",
     "terrain",
     "wind",
@@ -58,6 +59,8 @@ const SECTIONS: [&str; 18] = [
     "camera",
     "light",
     "stream",
+    "accuracy",
+    "budget",
 ];
 
 /// Structs whose fields a file writes directly in the section around them: field, file and name.

@@ -38,6 +38,8 @@ impl Vehicle {
         for collider in colliders {
             physics.insert_collider(collider, Some(body));
         }
+        // The controls come before the first physics step, which would compute the mass: wheels on the ground push a body without mass to an infinite speed.
+        physics.bodies[body].recompute_mass_properties_from_colliders(&physics.colliders);
         let controller = (dynamics.controller)(body, settings, heading_rad);
         let previous = pose(&physics.bodies[body]);
         Self { kind, half_extents_m: settings.half_extents_m(kind), body, controller, previous }

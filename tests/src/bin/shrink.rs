@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Parser;
-use tests::picture::Picture;
+use prairie::charts::image::Picture;
 
 /// Shrinks a PNG to the width that documents show, and writes it as JPEG (or PNG, by the ending of OUT).
 #[derive(Parser)]

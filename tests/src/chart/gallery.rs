@@ -6,10 +6,10 @@ use std::path::Path;
 use anyhow::{Context as _, Result};
 use prairie_client::render::{Gpu, Quality, RenderOptions};
 
-use crate::similarity::Similarity;
-use crate::still::Still;
-use crate::texture::Texture;
-use crate::views::View;
+use prairie::charts::similarity::Similarity;
+use prairie::charts::still::Still;
+use prairie::charts::texture::Texture;
+use prairie::charts::views::View;
 
 /// A picture of the page.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,7 +89,7 @@ pub fn write(plates: &[Plate], [width, height]: [u32; 2], quality: Quality, mach
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::views::VIEWS;
+    use prairie::charts::views::VIEWS;
 
     #[test]
     fn the_page_shows_every_plate_with_its_figures() -> Result<()> {

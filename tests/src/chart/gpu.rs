@@ -8,7 +8,7 @@ use prairie::studio::Stage;
 use prairie_client::camera::Camera;
 use prairie_client::render::{BlendOrder, Gpu, OffscreenRenderer as Canvas, PassSecs, Quality, RenderOptions};
 
-use super::table::markdown;
+use prairie_charts::table::markdown;
 
 /// Picture sizes (px), and with `quick` a small one.
 const SIZES_PX: [[u32; 2]; 2] = [[1920, 1080], [3840, 2160]];

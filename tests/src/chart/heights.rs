@@ -4,9 +4,9 @@ use anyhow::Result;
 use prairie::studio::Act;
 use prairie_client::render::{FarPlants, Gpu, OffscreenRenderer, Quality, RenderOptions};
 
-use crate::picture::Picture;
-use crate::still::Still;
-use crate::views::{View, over};
+use prairie::charts::image::Picture;
+use prairie::charts::still::Still;
+use prairie::charts::views::{View, over};
 
 /// Height above the ground (m) and pitch (degrees) of each view: those of the source, and of the keys `1` to `4` of the page.
 const VIEWS: [(f32, f32); 4] = [(1.0, -3.0), (5.0, -9.0), (10.0, -15.0), (20.0, -24.0)];

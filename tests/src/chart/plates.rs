@@ -8,9 +8,9 @@ use prairie::studio::{Act, Stage};
 use prairie_client::render::{Gpu, Quality};
 use prairie_core::scene::Scene;
 
-use crate::picture::Picture;
-use crate::still::Still;
-use crate::views::{Eye, over};
+use prairie::charts::image::Picture;
+use prairie::charts::still::Still;
+use prairie::charts::views::{Eye, over};
 
 /// A plate.
 #[derive(Clone, Copy)]

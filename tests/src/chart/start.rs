@@ -7,9 +7,9 @@ use prairie::scenes;
 use prairie::world::World;
 use tokio::time::sleep;
 
-use super::table::markdown;
 use crate::browser::{Browser, Options};
 use crate::prairie::Prairie;
+use prairie_charts::table::markdown;
 
 /// Size of every page (CSS pixels).
 const SIZE_PX: [u32; 2] = [1280, 720];

@@ -11,7 +11,7 @@ use tokio::process::Command;
 use tokio::time::sleep;
 
 use crate::browser::{Browser, Options};
-use crate::picture::Picture;
+use prairie::charts::image::Picture;
 
 /// Size of every page (CSS pixels).
 const SIZE_PX: [u32; 2] = [640, 360];

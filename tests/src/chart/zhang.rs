@@ -8,10 +8,10 @@ use prairie::studio::Act;
 use prairie::world::World;
 use prairie_client::render::{BlendOrder, FarPlants, Gpu, Quality, RenderOptions};
 
-use super::machine::{memory_gib, processor, rustc_version};
-use super::table::markdown;
-use crate::still::Still;
-use crate::views::{Eye, View};
+use prairie::charts::still::Still;
+use prairie::charts::views::{Eye, View};
+use prairie_charts::machine::{memory_gib, processor, rustc_version};
+use prairie_charts::table::markdown;
 
 const SCENE: &str = "prairie-2000";
 const VIEW: View =

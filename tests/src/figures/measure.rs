@@ -1,8 +1,8 @@
 //! Running the commands of the figures.
 
 use super::Figure;
-use crate::chart::machine::machine;
 use anyhow::{Context as _, Result, ensure};
+use prairie_charts::machine::machine;
 use std::path::Path;
 use std::process::{Command, Stdio};
 

@@ -2,6 +2,7 @@
 
 use glam::Quat;
 use prairie::bend::pool::Pool;
+use prairie::charts::worlds;
 use prairie_core::bend::{Bend, Patch};
 use prairie_core::body::{BodyPose, Motion, MotionError};
 use prairie_core::grass::bending::{bend_after_rad, bending_speed_rad_per_s, direction, terrain_limit_rad};
@@ -14,7 +15,6 @@ use prairie_core::wind::WindField;
 use prairie_core::wire::TurbulenceState;
 use prairie_core::wire::quantise::CodeSteps;
 use std::sync::Arc;
-use tests::worlds;
 
 const DT_SECS: f32 = 1.0 / 60.0;
 

@@ -2,6 +2,7 @@
 
 use glam::Quat;
 use prairie::bend::pool::Pool;
+use prairie::charts::worlds;
 use prairie_core::body::{BodyPose, Motion};
 use prairie_core::grass::BendSimulation;
 use prairie_core::grass::wind_drawing::WindDrawings;
@@ -9,7 +10,6 @@ use prairie_core::scene::{Objects, Scene, VehicleKind};
 use prairie_core::terrain::{CoverMap, HeightMap, grey_png};
 use std::f32::consts::TAU;
 use std::sync::Arc;
-use tests::worlds;
 
 const DT_SECS: f32 = 1.0 / 60.0;
 const WALK_M_PER_S: f32 = 1.8;

@@ -2,9 +2,9 @@
 
 use std::f32::consts::FRAC_PI_2;
 
+use prairie_charts::problems::bend::{Energy, alike, cells, start};
 use prairie_core::bend::{Edges, Field, GroundContact, Kinds, Scheme, Serial};
 use prairie_core::grid::PatchLayout;
-use tests::problems::bend::{Energy, alike, cells, start};
 
 use crate::limits::random;
 

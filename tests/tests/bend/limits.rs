@@ -1,9 +1,9 @@
 //! Stability limit of the explicit scheme of Chen & Johan, by bisection: constant speeds, varying speeds, road speed.
 
+use prairie_charts::problems::bend::{Striker, size};
 use prairie_core::bend::limits::courant_limit;
 use prairie_core::bend::{Bend, Edges, Field, Kinds, Scheme, Serial, WaveParams};
 use prairie_core::grid::PatchLayout;
-use tests::problems::bend::{Striker, size};
 
 const DT_SECS: f32 = 0.01;
 const COUNT: usize = 32;

@@ -5,9 +5,9 @@
 
 use std::f32::consts::FRAC_PI_2;
 
+use prairie_charts::problems::bend::{Course, Draw};
 use prairie_core::bend::{GroundContact, Rest, Scheme};
 use rayon::prelude::*;
-use tests::problems::bend::{Course, Draw};
 
 const DEFAULT_REST: Rest = Rest { theta_rad: 0.01, omega_rad_per_s: 0.2 };
 

@@ -2,9 +2,9 @@
 
 use std::f32::consts::TAU;
 
+use prairie_charts::problems::bend::{Striker, Threads, channels, size};
 use prairie_core::bend::{Bend, Edges, Field, Kinds, Rest, Scheme, WaveParams};
 use prairie_core::grid::PatchLayout;
-use tests::problems::bend::{Striker, Threads, channels, size};
 
 const DT_SECS: f32 = 1.0 / 60.0;
 const STEPS: u32 = 120;

@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
+use prairie_charts::problems::bend::{OneGrid, Striker, Threads, cells, channels, largest_difference, size};
+use prairie_charts::random_winds::Random;
 use prairie_core::bend::{
     Bend, Damping, Edges, Executor, Field, GroundContact, Kinds, Report, Rest, Scheme, Seams, Serial, TILE, WaveParams,
 };
 use prairie_core::grid::PatchLayout;
 use proptest::prelude::*;
 use rayon::prelude::*;
-use tests::problems::bend::{OneGrid, Striker, Threads, cells, channels, largest_difference, size};
-use tests::random_winds::Random;
 
 const EDGES: [Edges; 3] = [Edges::Rest, Edges::Free, Edges::Wrapped];
 

@@ -1,5 +1,6 @@
 //! Heavy objects flatten the grass: tracks stay, fade with their own time constant, and are sent although their patches sleep.
 
+use prairie::charts::worlds;
 use prairie::snapshot::PatchQuantiser;
 use prairie::world::{Camera, Command, World};
 use prairie_core::bend::{Field, Kinds, TILE};
@@ -8,7 +9,6 @@ use prairie_core::grid::PatchLayout;
 use prairie_core::scene::{Grass, Scene, VehicleKind};
 use prairie_core::wire::Drive;
 use prairie_core::wire::quantise::CodeSteps;
-use tests::worlds;
 
 const AHEAD: Drive = Drive { throttle: 1.0, steer: 0.0, lift: 0.0, brake: 0.0 };
 

@@ -3,10 +3,10 @@
 
 use std::f64::consts::TAU;
 
+use prairie_charts::norms::fitted_order;
+use prairie_charts::problems::bend::{OneGrid, cells};
 use prairie_core::bend::{Bend, Damping, Edges, Field, Kinds, Scheme, Serial, WaveParams};
 use prairie_core::grid::PatchLayout;
-use tests::norms::fitted_order;
-use tests::problems::bend::{OneGrid, cells};
 
 use crate::limits::random;
 

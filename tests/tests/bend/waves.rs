@@ -4,12 +4,12 @@
 
 use std::f64::consts::TAU;
 
-use prairie_core::bend::{CHANNELS, Edges, Field, Kinds, Scheme, Serial};
-use prairie_core::grid::PatchLayout;
-use tests::norms::{Norms, fitted_order};
-use tests::problems::bend::{
+use prairie_charts::norms::{Norms, fitted_order};
+use prairie_charts::problems::bend::{
     Energy, FACTORS, Mode, Oscillation, Pulse, Recurrence, Steps, alike, cells, channels, largest_difference, start,
 };
+use prairie_core::bend::{CHANNELS, Edges, Field, Kinds, Scheme, Serial};
+use prairie_core::grid::PatchLayout;
 
 const WIDTH_M: f64 = 16.0;
 const SPEED_M_PER_S: f32 = 2.0;

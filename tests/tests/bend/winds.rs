@@ -1,6 +1,7 @@
 //! Wind as an object (Chen & Johan, §5.3): helicopter downwash, cyclones, drawn winds.
 
 use png::{BitDepth, ColorType};
+use prairie::charts::worlds;
 use prairie::scenes;
 use prairie::world::World;
 use prairie_core::bend::{Bend, Field, Kinds, Patch, Serial};
@@ -13,7 +14,7 @@ use prairie_core::grid::PatchLayout;
 use prairie_core::scene::{DrawnWind, Grass, WindShape};
 use prairie_core::terrain::{CoverMap, HeightMap, grey_png};
 use std::sync::Arc;
-use tests::{maps, worlds};
+use tests::maps;
 
 const DT_SECS: f32 = 1.0 / 60.0;
 const LAYOUT: PatchLayout = PatchLayout { count: [2, 2], cells: 64, cell_m: 0.25 };

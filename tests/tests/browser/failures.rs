@@ -1,12 +1,12 @@
 //! Failures beneath a running page, in a real browser: it reports them and recovers where possible.
 
 use anyhow::{Result, ensure};
+use prairie::charts::image::Picture;
+use prairie::charts::texture::Texture;
 use prairie::scenes;
 use prairie::world::World;
 use tests::browser::Browser;
-use tests::picture::Picture;
 use tests::prairie::Prairie;
-use tests::texture::Texture;
 
 async fn visited_meadow() -> Result<(Prairie, Browser)> {
     let mut meadow = scenes::load("meadow")?;

@@ -1,11 +1,11 @@
 //! The icons of the page: pictures of `icon.svg`.
 
 use anyhow::{Context as _, Result, ensure};
+use prairie::charts::image::Picture;
 use std::fs;
 use std::path::Path;
 use tests::browser::{Browser, Options};
 use tests::pages::Pages;
-use tests::picture::Picture;
 
 /// File, side (px), and size of the drawing as a fraction of that. With less than 1 the background fills the square, as home screens expect that cut
 /// their own shape; 0.8 of a maskable icon is visible under every shape.

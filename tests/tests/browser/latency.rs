@@ -3,11 +3,11 @@
 use std::time::Duration;
 
 use anyhow::{Context as _, Result, ensure};
+use prairie::charts::worlds;
 use prairie::world::World;
 use tests::browser::Browser;
 use tests::prairie::Prairie;
 use tests::slow_line::slow_line;
-use tests::worlds;
 
 /// Size of the page (CSS pixels): small, since drawing in software must not take longer than what is measured.
 const SMALL: [u32; 2] = [160, 100];

@@ -1,6 +1,7 @@
 //! The page in a real browser, and the world behind it.
 
 mod access;
+mod charts;
 mod failures;
 mod icons;
 mod input;

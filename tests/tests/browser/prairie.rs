@@ -3,6 +3,7 @@
 //! Assertions use the clients' mirrors (the received state) and the pixels (the drawn state).
 
 use anyhow::{Context as _, Result, bail, ensure};
+use prairie::charts::image::Picture;
 use prairie::runner::Simulation;
 use prairie::scenes::{self, LoadedScene};
 use prairie::snapshot::{PatchQuantiser, Snapshot};
@@ -15,7 +16,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 use tests::browser::Browser;
-use tests::picture::Picture;
 use tokio::time::sleep;
 
 /// Bending angles (rad): above the first a position counts as track, below the second as recovered.

@@ -1,11 +1,11 @@
 //! Saved pictures, links and quality, in a real browser.
 
 use anyhow::{Context as _, Result, ensure};
+use prairie::charts::image::Picture;
 use prairie::scenes;
 use prairie::world::World;
 use serde_json::{Value, json};
 use tests::browser::{Browser, VIEW};
-use tests::picture::Picture;
 use tests::prairie::Prairie;
 
 /// The meadow without underbrush, which takes half the time to draw.

@@ -2,10 +2,10 @@
 
 use crate::{Golden, Unlike, golden};
 use anyhow::Result;
+use prairie::charts::views::{Eye, over};
 use prairie::studio::Act;
 use prairie_client::render::{Quality, RenderOptions, Sun};
 use prairie_core::scene::Scene;
-use tests::views::{Eye, over};
 
 /// Render options with the sun at a heading and an elevation (degrees).
 fn sunlit(heading_deg: f32, elevation_deg: f32) -> RenderOptions {

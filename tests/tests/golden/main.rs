@@ -10,12 +10,12 @@ mod options;
 mod scenes;
 
 use anyhow::{Context as _, Result, ensure};
+use prairie::charts::image::{Difference, Picture};
+use prairie::charts::views::Eye;
 use prairie::studio::{Act, Stage};
 use prairie_client::render::{Gpu, OffscreenRenderer as Canvas, Quality, RenderOptions, Split};
 use prairie_core::scene::Scene;
 use std::path::PathBuf;
-use tests::picture::{Difference, Picture};
-use tests::views::Eye;
 
 /// A test with the name of its stored picture.
 macro_rules! golden {

@@ -2,8 +2,8 @@
 
 use crate::{Golden, Unlike, golden};
 use anyhow::Result;
+use prairie::charts::views::Eye;
 use prairie::studio::Act;
-use tests::views::Eye;
 
 golden!(
     car,

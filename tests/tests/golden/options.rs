@@ -2,8 +2,8 @@
 
 use crate::{Golden, Unlike, golden};
 use anyhow::Result;
+use prairie::charts::views::over;
 use prairie_client::render::{BlendOrder, FarPlants, Quality, RenderOptions, SideOptions, Split};
-use tests::views::over;
 
 /// Render options with a transparency order and a representation of distant plants.
 fn look(order: BlendOrder, far: FarPlants) -> RenderOptions {

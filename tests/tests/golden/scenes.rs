@@ -2,9 +2,9 @@
 
 use crate::{Golden, Unlike, golden};
 use anyhow::Result;
+use prairie::charts::views::over;
 use prairie::studio::Act;
 use prairie_client::render::RenderOptions;
-use tests::views::over;
 
 /// A larger picture, for whole scenes.
 fn large() -> Golden {

@@ -3,11 +3,11 @@
 //! The level within a frame budget depends on the machine (see `chart picture`); these tests bound the error at any level.
 
 use anyhow::{Result, ensure};
+use prairie::charts::image::Picture;
+use prairie::charts::similarity::Similarity;
+use prairie::charts::still::Still;
 use prairie_client::ladder::LEAST_RESOLUTION;
 use prairie_client::render::{Gpu, Quality};
-use tests::picture::Picture;
-use tests::similarity::Similarity;
-use tests::still::Still;
 
 use crate::{SIZE_PX, ensure_refused, gpu, view};
 

@@ -2,11 +2,11 @@
 
 use anyhow::{Result, ensure};
 use glam::Vec3;
+use prairie::charts::still::Still;
+use prairie::charts::views::View;
+use prairie_charts::random_winds::Random;
 use prairie_client::camera::Camera;
-use prairie_client::render::{Gpu, Quality, RenderOptions};
-use tests::random_winds::Random;
-use tests::still::Still;
-use tests::views::View;
+use prairie_client::render::{Gpu, Occlusion, Quality, RenderOptions};
 
 use crate::gpu;
 
@@ -41,7 +41,7 @@ fn compare(gpu: &Gpu, name: &str, cameras: u32, random: &mut Random) -> Result<(
     let mut still = Still::of(View::find(name)?, SIZE_PX)?;
     let [mut culled, mut whole] = [true, false].map(|culls| {
         let mut canvas = still.canvas(gpu, Quality::Low);
-        canvas.set_options(RenderOptions { culls, ..RenderOptions::default() });
+        canvas.set_options(RenderOptions { culls, occlusion: Occlusion::Always, ..RenderOptions::default() });
         canvas
     });
     let mut bent = [0_u64; 2];

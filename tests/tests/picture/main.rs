@@ -2,6 +2,7 @@
 
 mod automatic;
 mod culling;
+mod occlusion;
 mod pipeline_statistics;
 mod popping;
 mod similarity;
@@ -9,10 +10,10 @@ mod similarity;
 use std::path::Path;
 
 use anyhow::{Context as _, Result, bail, ensure};
+use prairie::charts::image::Picture;
+use prairie::charts::still::Still;
+use prairie::charts::views::View;
 use prairie_client::render::Gpu;
-use tests::picture::Picture;
-use tests::still::Still;
-use tests::views::View;
 
 /// Size of most pictures (px).
 const SIZE_PX: [u32; 2] = [320, 180];

@@ -1,12 +1,12 @@
 //! GPU pipeline statistics match the drawn content.
 
 use anyhow::{Context as _, Result, ensure};
+use prairie::charts::still::Still;
+use prairie::charts::views::View;
+use prairie::charts::worlds::{bare_land, flat_meadow, on_foot};
 use prairie_client::render::{
     BlendOrder, FarPlants, Gpu, OffscreenRenderer as Canvas, PassStatistics, PipelineStatistics, Quality, RenderOptions,
 };
-use tests::still::Still;
-use tests::views::View;
-use tests::worlds::{bare_land, flat_meadow, on_foot};
 
 use crate::{ensure_refused, gpu};
 

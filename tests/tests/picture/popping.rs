@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use anyhow::{Context as _, Result, ensure};
+use prairie::charts::image::Picture;
+use prairie::charts::similarity::Flip;
+use prairie::charts::still::Still;
+use prairie::charts::views::View;
 use prairie_client::render::{Gpu, OffscreenRenderer as Canvas, Quality, RenderOptions};
-use tests::picture::Picture;
-use tests::similarity::Flip;
-use tests::still::Still;
-use tests::views::View;
 
 use crate::{ensure_refused, gpu};
 

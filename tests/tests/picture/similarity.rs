@@ -1,11 +1,11 @@
 //! All render options against the reference, at medium quality.
 
 use anyhow::{Result, ensure};
+use prairie::charts::image::Picture;
+use prairie::charts::picture::METHODS;
+use prairie::charts::similarity::{Flip, Similarity};
+use prairie::charts::texture::Texture;
 use prairie_client::render::Quality;
-use tests::chart::picture::METHODS;
-use tests::picture::Picture;
-use tests::similarity::{Flip, Similarity};
-use tests::texture::Texture;
 
 use crate::{SIZE_PX, gpu, view};
 

@@ -6,10 +6,10 @@
 //!
 //! The shear layer at canopy height has the length `U/U′`. Where U is far above U_b, so that G is negligible, it is `√(3ν / (2·C_d·a·U))`.
 
+use prairie_charts::air::still_air;
+use prairie_charts::norms::Norms;
+use prairie_charts::orders::{Order, assert_expected};
 use prairie_wind::{Boundary, Canopy, Config, Solver};
-use tests::air::still_air;
-use tests::norms::Norms;
-use tests::orders::{Order, assert_expected};
 
 const TOP_M: f64 = 16.0;
 const DRAG_PER_M: f64 = 0.125;

@@ -2,9 +2,9 @@
 //!
 //! Their tables have an error of their own (see [`GHIA_RE_1000`]), which is part of the differences here.
 
+use prairie_charts::air::{still_air, velocity_difference};
+use prairie_charts::problems::{Cavity, GHIA_RE_100, GHIA_RE_1000};
 use prairie_wind::{Boundary, Config, Solver};
-use tests::air::{still_air, velocity_difference};
-use tests::problems::{Cavity, GHIA_RE_100, GHIA_RE_1000};
 
 /// Side of the box (m), and the speed of its lid (m/s): the unit of time is a second.
 const SIDE_M: f64 = 16.0;

@@ -1,8 +1,8 @@
 //! The conservative scheme conserves momentum, dust and, up to the time error, kinetic energy.
 
+use prairie_charts::air::{noise, still_air};
+use prairie_charts::orders::{Order, assert_expected};
 use prairie_wind::{Boundary, Config, Diffusion, Dust, Real, Solver, TimeScheme};
-use tests::air::{noise, still_air};
-use tests::orders::{Order, assert_expected};
 
 const WRAP: [[Boundary; 2]; 3] = [[Boundary::Wrap; 2]; 3];
 

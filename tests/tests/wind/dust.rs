@@ -1,11 +1,11 @@
 //! Dust under each scheme: a rotating hill, Zalesak's slotted disc, and a diffusing spot.
 
+use prairie_charts::norms::Norms;
+use prairie_charts::orders;
+use prairie_charts::problems::{Rotation, SlottedDisc};
+use prairie_charts::tables::assert_published;
+use prairie_charts::turntable::turntable;
 use prairie_wind::{Advection, Solver};
-use tests::chart::tables::assert_published;
-use tests::norms::Norms;
-use tests::orders;
-use tests::problems::{Rotation, SlottedDisc};
-use tests::turntable::turntable;
 
 #[test]
 fn each_advection_scheme_has_its_order_on_a_rotating_hill() {

@@ -1,7 +1,7 @@
 //! On the decaying flow of Ethier & Steinman, through all six faces of a box, methods have their order in three dimensions.
 
-use tests::chart::tables::assert_published;
-use tests::orders;
+use prairie_charts::orders;
+use prairie_charts::tables::assert_published;
 
 #[test]
 #[ignore = "minutes; cargo nextest run --release --workspace --run-ignored only -E 'test(methods_have_their_order_with_prescribed)'"]

@@ -1,8 +1,8 @@
 //! Waves over grass that sways, against the linear theory of Py, de Langre & Moulia (2006).
 
+use prairie_charts::problems::honami::stability::{MeanFlow, most_amplified, wave};
+use prairie_charts::problems::honami::{ALFALFA, Meadow, rigid, simulation};
 use std::f64::consts::TAU;
-use tests::problems::honami::stability::{MeanFlow, most_amplified, wave};
-use tests::problems::honami::{ALFALFA, Meadow, rigid, simulation};
 
 /// Wave number (1/m) of the comparison, near that of the most amplified wave.
 const K_PER_M: f64 = 2.3;
@@ -11,7 +11,7 @@ const K_PER_M: f64 = 2.3;
 fn waves_grow_as_in_linear_theory_with_second_order() {
     // The theory's own differences are of second order, too: its limit from two grids.
     let [coarse, fine] = [24, 48].map(|nodes| wave(&ALFALFA, &MeanFlow::new(&ALFALFA, nodes), K_PER_M));
-    let limit = |of: fn(&tests::problems::honami::Wave) -> f64| of(&fine) + (of(&fine) - of(&coarse)) / 3.0;
+    let limit = |of: fn(&prairie_charts::problems::honami::Wave) -> f64| of(&fine) + (of(&fine) - of(&coarse)) / 3.0;
     let [growth, frequency] = [limit(|wave| wave.growth_per_s), limit(|wave| wave.frequency_rad_per_s)];
     let found = [8, 12, 16].map(|cells| simulation::wave(&ALFALFA, K_PER_M, cells));
     let errors = found.map(|wave| (wave.growth_per_s / growth - 1.0).abs());

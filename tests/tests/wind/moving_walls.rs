@@ -1,7 +1,7 @@
 //! Friction has its order next to walls that move, at constant or at changing speed.
 
-use tests::chart::tables::assert_published;
-use tests::orders;
+use prairie_charts::orders;
+use prairie_charts::tables::assert_published;
 
 #[test]
 fn friction_has_its_order_under_a_lid_that_starts() {

@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
+use prairie_charts::air::{noise, still_air};
 use prairie_wind::pressure::{Effort, IterativeMethod, Projection, divergence};
 use prairie_wind::{Boundary, Config, Grid, Pressure, Solver, Velocity, boundary::BoundaryConditions};
-use tests::air::{noise, still_air};
 
 const WRAP: [[Boundary; 2]; 3] = [[Boundary::Wrap; 2]; 3];
 const CLOSED: [[Boundary; 2]; 3] = [[Boundary::NoSlip; 2], [Boundary::NoSlip, Boundary::FreeSlip], [Boundary::Reflect; 2]];

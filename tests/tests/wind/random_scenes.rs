@@ -1,8 +1,8 @@
 //! Random valid scenes: the wind rejects them with a named error or stays finite, and gains no energy without forcing.
 
+use prairie_charts::random_winds::RandomWind;
 use prairie_wind::{Advection, Boundary, Diffusion, Location, Pressure, Real, Solver, StepError, TimeScheme};
 use std::collections::BTreeMap;
-use tests::random_winds::RandomWind;
 
 /// Winds of both tests together; `PRAIRIE_WINDS` sets another number.
 const WINDS: u64 = 2000;

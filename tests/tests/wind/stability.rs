@@ -1,12 +1,12 @@
 //! The wind's methods become unstable at their theoretical limits; those without a limit never do.
 
+use prairie_charts::limits::{Limit, Transport, dust_bounds, explicit_diffusion};
+use prairie_charts::random_winds::Random;
 use prairie_wind::diffuse::{Implicit, Portion, diffuse};
 use prairie_wind::pressure::{Effort, IterativeMethod};
 use prairie_wind::{
     Advection, Boundary, Config, Diffusion, Dust, Field, Grid, Gusts, Location, Pressure, Profile, Solver, StepError, TimeScheme,
 };
-use tests::limits::{Limit, Transport, dust_bounds, explicit_diffusion};
-use tests::random_winds::Random;
 
 fn report(limit: &Limit) {
     println!(

@@ -1,8 +1,8 @@
 //! On the decaying Taylor–Green vortex, drifting through a periodic box, every scheme has its formal order.
 
+use prairie_charts::orders;
+use prairie_charts::tables::assert_published;
 use prairie_wind::Advection;
-use tests::chart::tables::assert_published;
-use tests::orders;
 
 #[test]
 fn semi_lagrangian_advection_has_its_order_with_every_time_scheme() {

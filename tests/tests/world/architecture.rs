@@ -50,6 +50,21 @@ fn prairie_wind_depends_on_neither_server_nor_client() -> Result<()> {
     Ok(())
 }
 
+/// The build script of the server and the package of charts put the page together alike; a published package holds no files of another.
+#[test]
+fn both_copies_of_inline_rs_are_equal() -> Result<()> {
+    let [of_build, of_charts] =
+        ["server/build/inline.rs", "server/charts/src/inline.rs"].map(|file| fs::read_to_string(workspace().join(file)));
+    assert_eq!(of_build?, of_charts?);
+    Ok(())
+}
+
+#[test]
+fn prairie_charts_knows_no_server() -> Result<()> {
+    assert_free_of("prairie-charts", &dependencies("prairie-charts", &[])?, &["prairie", "tests", "tokio", "axum", "rerun"]);
+    Ok(())
+}
+
 #[test]
 #[should_panic(expected = "tests depends on prairie-client")]
 fn a_forbidden_dependency_is_found() {
@@ -58,7 +73,7 @@ fn a_forbidden_dependency_is_found() {
 
 #[test]
 fn server_and_client_never_depend_on_each_other() -> Result<()> {
-    // But for the feature `picture`, which draws without a browser.
+    // But for the features `picture`, which draws without a browser, and `charts`, which times the renderer.
     assert_free_of("prairie", &dependencies("prairie", &[])?, &["prairie-client", "wgpu-core"]);
     for options in [&[], BROWSER] {
         assert_free_of("prairie-client", &dependencies("prairie-client", options)?, &["prairie", "tests", "tokio", "axum", "rerun"]);
@@ -75,7 +90,7 @@ fn the_library_does_without_what_only_the_program_uses() -> Result<()> {
 #[test]
 fn tests_depend_on_every_package() -> Result<()> {
     let all = dependencies("tests", &[])?;
-    for name in ["prairie-core", "prairie-vehicles", "prairie", "prairie-wind", "prairie-client"] {
+    for name in ["prairie-core", "prairie-vehicles", "prairie", "prairie-charts", "prairie-wind", "prairie-client"] {
         assert!(all.iter().any(|dependency| dependency == name), "tests does not depend on {name}");
     }
     Ok(())
@@ -106,7 +121,7 @@ fn uses(source: &str, library: &str) -> bool {
 /// Source files of the product that use a library, as paths below the workspace.
 fn files_using(library: &str) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
-    for package in ["shared/src", "shared/vehicles/src", "server/src", "server/wind/src", "client-wasm/src"] {
+    for package in ["shared/src", "shared/vehicles/src", "server/src", "server/charts/src", "server/wind/src", "client-wasm/src"] {
         rust_files(&workspace().join(package), &mut files)?;
     }
     let mut found = Vec::new();
@@ -135,8 +150,15 @@ fn only_inspect_uses_rerun() -> Result<()> {
 }
 
 #[test]
-fn only_the_studio_and_its_commands_use_the_renderer() -> Result<()> {
-    let allowed = ["server/src/studio", "server/src/cli/shot.rs", "server/src/cli/picture.rs", "client-wasm/src"];
+fn only_the_studio_the_charts_and_their_commands_use_the_renderer() -> Result<()> {
+    let allowed = [
+        "server/src/studio",
+        "server/src/charts",
+        "server/charts/src",
+        "server/src/cli/shot.rs",
+        "server/src/cli/picture.rs",
+        "client-wasm/src",
+    ];
     for file in files_using("prairie_client")? {
         assert!(allowed.iter().any(|place| file.starts_with(place)), "{} uses prairie_client", file.display());
     }

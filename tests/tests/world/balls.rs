@@ -1,12 +1,12 @@
 //! Balls rest, are kicked by vehicles and monsters, roll, come to rest again, and press the grass.
 
+use prairie::charts::worlds;
 use prairie::objects::{Environment, Objects};
 use prairie::world::{Camera, Command, World};
 use prairie_core::scene::Scene;
 use prairie_core::scene::VehicleKind::{self, Ball, Car, Helicopter, Monster, Sled};
 use prairie_core::wire::{Drive, ObjectPose};
 use std::sync::Arc;
-use tests::worlds;
 
 const AHEAD: Drive = Drive { throttle: 1.0, steer: 0.0, lift: 0.0, brake: 0.0 };
 

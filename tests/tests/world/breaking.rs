@@ -1,5 +1,6 @@
 //! Underbrush breaks permanently under objects and in storms, and falls in the direction of the load.
 
+use prairie::charts::worlds;
 use prairie::scenes;
 use prairie::snapshot::BrokenPlants;
 use prairie::world::{Camera, Command, World};
@@ -10,7 +11,6 @@ use prairie_core::terrain::{CoverMap, grey_png};
 use prairie_core::wire::quantise::{CodeSteps, heading_rad};
 use prairie_core::wire::{BrokenPlant, Drive, SERVER_MESSAGE_LIMIT, ServerMessage, decode, encode};
 use std::f32::consts::{PI, TAU};
-use tests::worlds;
 
 const AHEAD: Drive = Drive { throttle: 1.0, steer: 0.0, lift: 0.0, brake: 0.0 };
 

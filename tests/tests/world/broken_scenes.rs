@@ -6,7 +6,8 @@ use prairie_core::terrain::grey_png;
 use std::path::Path;
 use tests::maps;
 
-const BROKEN: [&str; 45] = [
+const BROKEN: [&str; 47] = [
+    "accuracy",
     "unknown-field",
     "syntax",
     "out-of-range",
@@ -20,6 +21,7 @@ const BROKEN: [&str; 45] = [
     "wind-patch",
     "wind-follow",
     "wind-obstacle",
+    "wind-endless",
     "wind-time",
     "wind-reflection",
     "wind-stable-fluids",

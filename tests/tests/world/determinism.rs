@@ -1,9 +1,9 @@
 //! The same scene and commands give the same bits on any number of threads.
 
+use prairie::charts::worlds;
 use prairie::world::{Camera, Command};
 use prairie_core::scene::VehicleKind;
 use prairie_core::wire::Drive;
-use tests::worlds;
 
 const CLIENTS: u32 = 6;
 

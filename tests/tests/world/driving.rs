@@ -1,12 +1,12 @@
 //! Vehicles stay on the terrain, in the world and apart, and follow their controls.
 
+use prairie::charts::worlds;
 use prairie::objects::{Environment, Objects};
 use prairie::world::{Camera, Command, World};
 use prairie_core::scene::VehicleKind::{Ball, Car, Helicopter, Monster, Sled, Walker};
 use prairie_core::scene::{Scene, VehicleKind};
 use prairie_core::wire::{Drive, ObjectPose};
 use std::sync::Arc;
-use tests::worlds;
 
 fn spawn(world: &mut World, client: u32, kind: VehicleKind) {
     world.step(&[Command::Spawn { client, kind }]);
@@ -44,6 +44,25 @@ fn a_car_rests_accelerates_steers_and_brakes() {
     assert!(turned > 0.0 && turning.part_rad > 0.0, "right is from −Z to +X: {turned}");
     let stopped = drive(&mut world, 1, Drive { brake: 1.0, ..Drive::default() }, 300);
     assert!(speed(&stopped) < 0.3, "after 5 s of braking: {} m/s", speed(&stopped));
+}
+
+#[test]
+fn a_second_car_drives_off_from_land_that_is_already_there() -> anyhow::Result<()> {
+    for second_x_m in [10.0, 12.0, 14.0, 16.0, 18.0, 20.0] {
+        let mut loaded = prairie::scenes::load("blades")?;
+        loaded.scene.objects.self_driving = 0;
+        let mut world = World::new(&loaded.scene, loaded.maps())?;
+        let cameras = [(1, 2.0), (2, second_x_m)].map(|(client, x_m)| Camera { client, eye_m: [x_m, 2.0, 24.0] });
+        world.step(&[Command::Cameras(cameras.to_vec())]);
+        for client in [1, 2] {
+            spawn(&mut world, client, Car);
+            let [x_m, _, z_m] = pose(&mut world, client).position_m;
+            let [x_after_m, _, z_after_m] = drive(&mut world, client, AHEAD, 60).position_m;
+            let driven_m = (x_after_m - x_m).hypot(z_after_m - z_m);
+            anyhow::ensure!(driven_m > 1.0, "car {client} of the page at {second_x_m} m drove {driven_m} m from {x_m}, {z_m} m");
+        }
+    }
+    Ok(())
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use anyhow::{Context as _, Result};
 use png::{BitDepth, ColorType};
+use prairie::charts::worlds;
 use prairie::objects::Environment;
 use prairie::scenes;
 use prairie::studio::Stage;
@@ -14,7 +15,7 @@ use prairie_core::wire::{Drive, ModelUse};
 use prairie_vehicles::{LoneVehicle, VehicleMotion};
 use std::path::Path;
 use std::sync::Arc;
-use tests::{maps, worlds};
+use tests::maps;
 
 /// Place of the house (m), and half of its width, height and depth (m).
 const HOUSE_M: [f32; 2] = [65.0, 65.0];

@@ -1,6 +1,7 @@
 //! Posts of gates: in the way of every vehicle, of its prediction, and of those who look for a place to start.
 
 use anyhow::{Context as _, Result};
+use prairie::charts::worlds;
 use prairie::objects::Environment;
 use prairie::world::{Camera, Command, World};
 use prairie_core::body::BodyPose;
@@ -9,7 +10,6 @@ use prairie_core::scene::{RaceGate, Scene, VehicleKind};
 use prairie_core::wire::Drive;
 use prairie_vehicles::{LoneVehicle, TerrainColliders, VehicleMotion};
 use std::sync::Arc;
-use tests::worlds;
 
 /// Error bound of a prediction (m), as in [`LoneVehicle`].
 const ERROR_M: f32 = 0.25;

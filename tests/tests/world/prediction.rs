@@ -3,6 +3,7 @@
 use super::replica::{STEPS_PER_PUBLISH, Server, Viewer};
 use anyhow::{Context as _, Result, ensure};
 use glam::Vec3;
+use prairie::charts::worlds;
 use prairie::scenes::LoadedScene;
 use prairie::stream::Frame;
 use prairie::world::{Command, World};
@@ -13,7 +14,6 @@ use prairie_core::scene::VehicleKind::{self, Ball, Car, Helicopter, Monster, Sle
 use prairie_core::wire::{AppliedInput, Drive, ObjectId, ObjectPose, SERVER_MESSAGE_LIMIT, ServerMessage, decode};
 use std::collections::VecDeque;
 use std::time::Instant;
-use tests::worlds;
 
 const TICK_HZ: f64 = 60.0;
 /// Time between two pictures (s): not that of the steps.

@@ -1,9 +1,9 @@
 //! Snow under wheels, in a whole world.
 
+use prairie::charts::worlds;
 use prairie::world::{Command, World};
 use prairie_core::scene::{Scene, Snow, VehicleKind};
 use prairie_core::wire::Drive;
-use tests::worlds;
 
 /// A still, flat world in snow.
 fn snowy() -> (Scene, World) {

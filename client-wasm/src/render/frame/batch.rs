@@ -7,6 +7,7 @@ use crate::render::gpu::timestamps::Pass;
 use crate::render::options::render_options::BlendOrder;
 use crate::render::renderer::Renderer;
 use crate::render::scene_resources::SceneResources;
+use crate::render::solids::occlusion::Phase;
 use crate::render::targets::{overlay_pass, shadow_pass, tone_pass};
 
 type RenderPass = Counted<wgpu::RenderPass<'static>>;
@@ -64,16 +65,35 @@ impl<'a> Batch<'a> {
         }
     }
 
+    /// Draws the solids that were visible in the previous frame, reduces their depth to the pyramid, and lists the other solids that it does not hide.
+    pub(super) fn occluders(&mut self) {
+        let Some(objects) = self.scene.objects.as_ref().filter(|_| self.occludes()) else { return };
+        let mut pass = self.picture_pass(true, false);
+        objects.draw(&mut pass, Phase::Known, self.plan.has_lamps);
+        drop(pass);
+        let descriptor = wgpu::ComputePassDescriptor { label: Some("depth pyramid"), ..Default::default() };
+        let mut pass = self.encoder.begin_compute_pass(&descriptor);
+        pass.set_bind_group(0, &self.scene.textures.group, &[]);
+        self.renderer.depth_pyramid.iter().for_each(|pyramid| pyramid.reduce(&mut pass));
+        objects.list_new(&mut pass);
+    }
+
+    /// Whether this batch draws its solids in two phases.
+    fn occludes(&self) -> bool {
+        self.is_first && self.plan.occludes
+    }
+
     /// Culls, bends and sorts the plants.
     pub(super) fn bend(&mut self) {
-        let &FramePlan { has_spheres, has_lamps, .. } = self.plan;
+        let &FramePlan { has_spheres, has_lamps, occludes, .. } = self.plan;
+        let flags = [has_spheres, has_lamps, occludes];
         let scene = self.scene;
         let timestamp_writes = self.renderer.timestamps.as_ref().map(|queries| queries.of_compute(Pass::Bend, true));
         let pass = self.encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("bend"), timestamp_writes });
         let mut pass = counted(&mut self.renderer.statistics, Pass::Bend, pass);
         pass.set_bind_group(0, &scene.textures.group, &[]);
         if let Some(blades) = &scene.blades {
-            blades.bend(&mut pass, has_spheres, has_lamps);
+            blades.bend(&mut pass, flags);
         }
         if !self.is_first {
             return;
@@ -85,7 +105,7 @@ impl<'a> Batch<'a> {
             clumps.bend(&mut pass);
         }
         if let Some(underbrush) = &scene.underbrush {
-            underbrush.bend(&mut pass, has_spheres, has_lamps);
+            underbrush.bend(&mut pass, flags);
         }
         if let Some(dust) = &scene.dust {
             dust.drift(&mut pass);
@@ -97,9 +117,10 @@ impl<'a> Batch<'a> {
         let &FramePlan { has_lamps, order, .. } = self.plan;
         let scene = self.scene;
         let ends_picture = self.is_last && !self.is_weighted();
-        let mut pass = self.picture_pass(self.is_first, ends_picture);
+        let (begins_picture, phase) = if self.occludes() { (false, Phase::New) } else { (self.is_first, Phase::Whole) };
+        let mut pass = self.picture_pass(begins_picture, ends_picture);
         if let Some(objects) = scene.objects.as_ref().filter(|_| self.is_first) {
-            objects.draw(&mut pass, has_lamps);
+            objects.draw(&mut pass, phase, has_lamps);
         }
         if let Some(blades) = &scene.blades {
             if !order.blends() {

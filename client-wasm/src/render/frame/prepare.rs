@@ -4,6 +4,7 @@ use crate::render::frame::moment::Moment;
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::uniforms::Frame;
 use crate::render::inputs::cascades::SHADOW_CASCADES;
+use crate::render::inputs::depth_pyramid::DepthPyramid;
 use crate::render::inputs::frustum::{CascadeVolume, Frustum};
 use crate::render::inputs::view::View;
 use crate::render::inputs::viewpoint::Viewpoint;
@@ -46,6 +47,8 @@ pub(super) struct FramePlan {
     pub(super) patches_written: u32,
     /// Whether grass casts shadows.
     pub(super) grass_shades: bool,
+    /// Whether plants and solids behind others are culled.
+    pub(super) occludes: bool,
 }
 
 impl FramePlan {
@@ -98,7 +101,15 @@ impl Renderer {
         self.bindings.write(&self.gpu, &frame);
 
         let frustum = self.frustum(&view.projection_from_world);
-        let viewpoint = Viewpoint { eye_m, frustum: &frustum, detail: &detail, options: self.options, dt_secs };
+        let viewpoint = Viewpoint {
+            eye_m,
+            ground_m: decoded.heights().height_m(eye_m.x, eye_m.z),
+            frustum: &frustum,
+            detail: &detail,
+            options: self.options,
+            dt_secs,
+            picture_sr: self.picture_sr(frame.pixel_rad),
+        };
         let mut plan = self.plan(scene, decoded, &frame, &cascades, patches_written);
         self.set_blend_order(scene, &mut plan);
         scene.prepare_land(&self.gpu, &viewpoint);
@@ -111,6 +122,10 @@ impl Renderer {
         if let Some(objects) = &mut scene.objects {
             objects.show_race(mirror.next_gate(), mirror.ghost_pose());
             objects.prepare(&self.gpu, &poses, &viewpoint, cascades, time_secs as f32, frame.pixel_rad);
+            plan.occludes = objects.occludes();
+            if plan.occludes && self.depth_pyramid.is_none() {
+                self.depth_pyramid = Some(DepthPyramid::new(&scene.factory, &self.targets.depth, false));
+            }
         }
         plan
     }
@@ -128,6 +143,11 @@ impl Renderer {
         let grid_m = decoded.scene().plants.grid_m;
         let map = grid_map.get_or_insert_with(|| GridMap::new(factory, blades, &self.quality.detail(), grid_m, self.tone.target()));
         map.prepare(&self.gpu, blades, billboards.as_ref().filter(|_| has_clumps), from.detail, grid_m, (columns, self.size_px));
+    }
+
+    /// Solid angle of the picture (sr), as that of its pixels at its middle.
+    fn picture_sr(&self, pixel_rad: f32) -> f32 {
+        self.targets.size_px.map(|px| px as f32 * pixel_rad).iter().product()
     }
 
     fn frustum(&self, projection_from_world: &Mat4) -> Frustum {
@@ -154,6 +174,7 @@ impl Renderer {
             batches: 1,
             patches_written,
             grass_shades: frame.shade_strength > 0.0,
+            occludes: false,
         }
     }
 

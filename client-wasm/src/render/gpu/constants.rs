@@ -8,7 +8,7 @@ use prairie_core::light::snow;
 use prairie_core::lod;
 use prairie_core::plant::blade::{self, Integrator, deflection};
 use prairie_core::plant::tree::statics;
-use prairie_core::plant::underbrush::{drops, posture};
+use prairie_core::plant::underbrush::{drops, posture, spline};
 
 pub(crate) use super::flower_kinds::{
     FLOWER_BASE_RGB, FLOWER_DISC_M, FLOWER_DISC_RGB, FLOWER_PETAL_M, FLOWER_PETAL_WIDTH, FLOWER_PETALS, FLOWER_RISE_RAD, FLOWER_SQUARE,
@@ -20,7 +20,7 @@ pub(crate) use prairie_core::light::air::HAZE_FORWARD;
 pub(crate) use prairie_core::light::grass::{LEAF_EXTINCTION, LEAST_SUN_SINE};
 pub(crate) use prairie_core::light::lamp::LEAST_LAMP_DISTANCE_M;
 pub(crate) use prairie_core::light::shade::{
-    FLAT_RAD, LEAF_CLUMPING, LEAF_TOP, RESTING_RAD, SHADE_FIRST, SHADE_RATIO, SHADE_STEPS, THIRD_AREAS,
+    BARE_PLACES, BARE_WEIGHTS, FLAT_RAD, LEAF_CLUMPING, LEAF_TOP, RESTING_RAD, SHADE_FIRST, SHADE_RATIO, SHADE_STEPS, THIRD_AREAS,
 };
 pub(crate) use prairie_core::plant::blade::backbone::{LACK_RANGE, LARGEST_BULGE, LEAST_GROWTH, RIGHT_ANGLE_LACK, SPARE};
 pub(crate) use prairie_core::plant::blade::contact::CLEARANCE_M;
@@ -44,6 +44,23 @@ pub(crate) const PACKED_SNOW_ALBEDO: Vec3 = Vec3::from_array(snow::PACKED_SNOW_A
 /// Invocations per workgroup of the compute passes.
 pub(crate) const WORKGROUP_SIZE: u32 = 64;
 
+// --- horizon ---
+
+/// Samples of the horizon along a ray.
+pub(crate) const HORIZON_SAMPLES: u32 = 24;
+/// Maximum depth of the drawn land below the height map near the eye (m), and its growth with distance (m/m), since tiles get coarser.
+pub(crate) const DRAWN_LOWER_M: f32 = 0.3;
+pub(crate) const DRAWN_LOWER: f32 = 0.004;
+
+// --- depth pyramid ---
+
+/// Maximum number of cells along a side of the finest level of the depth pyramid; a power of two.
+pub(crate) const PYRAMID_SIDE: u32 = 256;
+/// Levels above the finest.
+pub(crate) const PYRAMID_LEVELS: u32 = PYRAMID_SIDE.ilog2();
+/// Minimum side of a cell of the finest level (px).
+pub(crate) const PYRAMID_CELL_PX: u32 = 4;
+
 // --- dust ---
 
 /// Cells of the wind domain among which puffs choose where to start.
@@ -60,11 +77,13 @@ pub(crate) const PASTS: i32 = lod::PASTS as i32;
 
 // --- shade of the sward ---
 
-/// Cells along a side of the map of the shade, and in all.
-pub(crate) const SHADE_PX: u32 = 192;
+/// Maps of the shade: one near the camera, and a coarser one that reaches farther.
+pub(crate) const SHADE_MAPS: u32 = SHADE_CELL_M.len() as u32;
+/// Cells along a side of a map of the shade, and in all of a map.
+pub(crate) const SHADE_PX: u32 = 160;
 pub(crate) const SHADE_CELLS: u32 = SHADE_PX * SHADE_PX;
-/// Side of a cell (m): that of the bend field's cells.
-pub(crate) const SHADE_CELL_M: f32 = 0.25;
+/// Sides of the cells of the maps (m); those of the first are as large as the bend field's.
+pub(crate) const SHADE_CELL_M: [f32; 2] = [0.25, 1.0];
 
 // --- blades and flowers ---
 
@@ -179,6 +198,20 @@ pub(crate) const PETAL: u32 = 2;
 pub(crate) const MIDDLE_LOAD: f32 = posture::MIDDLE_LOAD;
 pub(crate) const ARC_COSINE: [f32; 4] = posture::ARC_COSINE;
 pub(crate) const DROP_M_PER_S: f32 = drops::DROP_M_PER_S;
+/// Height of a plant (px) above which every section is drawn, and from which sections bend into curves and veins appear; and the factor on it from
+/// which on they do so fully.
+pub(crate) const CLOSE_PX: f32 = 300.0;
+pub(crate) const FULLY_CLOSE: f32 = 1.5;
+/// Straight parts of the curve of a section. From a section of length h that turns by θ they are h·θ/(8·6²) away: 0.2 px for 330 px and 10 degrees.
+pub(crate) const CURVE_PARTS: u32 = 6;
+pub(crate) const TANGENT_DEPARTURE: f32 = spline::TANGENT_DEPARTURE;
+/// Marks of the first and the last row of a ribbon.
+pub(crate) const FIRST_ROW: u32 = 1;
+pub(crate) const LAST_ROW: u32 = 2;
+/// Kinds of veins of a ribbon: side veins of a midrib, veins along it, and the streaks of a petal; others have none.
+pub(crate) const PINNATE: u32 = 1;
+pub(crate) const PARALLEL: u32 = 2;
+pub(crate) const STREAKED: u32 = 3;
 
 // --- ground, objects and sorting ---
 
@@ -215,6 +248,10 @@ pub(crate) const TREE_ANGLES: u32 = statics::NODES.angles as u32;
 pub(crate) const TREE_LOADS: u32 = statics::NODES.loads as u32;
 /// First bent component of an instance that has none.
 pub(crate) const NO_LIMBS: u32 = u32::MAX;
+/// Maximum number of instances of solids in a frame.
+pub(crate) const INSTANCE_LIMIT: u32 = 12_288;
+/// Maximum number of meshes with instances in a frame.
+pub(crate) const MESH_LIMIT: u32 = 512;
 /// Pressure that turns the leaves of a tree of components by an eighth of a turn, if it blows across them (Pa): that of a wind of 20 m/s.
 pub(crate) const LEAF_STIFFNESS_PA: f32 = 240.0;
 /// Maximum flutter of tree leaves (m along X).

@@ -14,6 +14,8 @@ pub(crate) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 pub(crate) struct PassFactory {
     pub(crate) gpu: Gpu,
     pub(crate) frame_layout: wgpu::BindGroupLayout,
+    /// Depth pyramid of the picture, against which passes test for hidden plants and solids.
+    pub(crate) pyramid: wgpu::Buffer,
     pub(crate) samples: u32,
     /// Whether more than one kind of grass grows; override `has_kinds` in WGSL.
     pub(crate) has_kinds: bool,

@@ -95,9 +95,9 @@ uniform_block! {
         target_m: [f32; 3],
         /// Radius around the line from the eye to it within which trees fade (m); 0 if there is none.
         fade_m: f32,
-        /// Corner of the map of the shade that grass casts (m), and its side (m).
+        /// Corners of the near and the far map of the shade that grass casts (m).
         shade_corner_m: [f32; 2],
-        shade_extent_m: f32,
+        shade_far_corner_m: [f32; 2],
         /// 1 if grass casts shadows, else 0.
         shade_strength: f32,
         /// Height above the ground that no grass exceeds (m).
@@ -108,6 +108,9 @@ uniform_block! {
         snow_m: f32,
         /// Mass of snow on leaves, relative to their own.
         snow_load: f32,
+        /// Snow on the leaves of trees, as a fraction of the most that they bear.
+        crown_snow: f32,
+        _pad: [u8; 8],
         /// Interaction spheres; unused entries are zero.
         spheres: [Sphere; SPHERE_LIMIT],
         /// Slabs.
@@ -403,7 +406,11 @@ uniform_block! {
         lowest_cell_m: [f32; 2],
         /// Maximum distance of plants beyond their grid (m).
         plant_reach_m: f32,
-        _pad: [u8; 4],
+        /// Distance from which heads thin out and the remaining ones are larger (m).
+        heads_thin_m: f32,
+        /// Minimum width of a drawn blade (px).
+        thinnest_px: f32,
+        _pad: [u8; 12],
     }
 }
 
@@ -525,7 +532,8 @@ uniform_block! {
         reach_m: f32,
         /// Factor on the screen heights below which plants are coarser.
         coarseness: f32,
-        _pad: [u8; 4],
+        /// Screen height from which they are drawn as curves (px), huge if never.
+        close_px: f32,
     }
 }
 

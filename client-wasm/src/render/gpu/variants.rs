@@ -14,6 +14,9 @@ pub(crate) type LampVariants<P> = Variants<1, P>;
 /// Variants without and with lamps, each without and with interaction spheres or slabs; overrides `has_lamps` and `meets_spheres` in WGSL.
 pub(crate) type SphereVariants<P> = Variants<2, P>;
 
+/// Two variants of a pipeline, without and with tests for occlusion; override `tests_occlusion` in WGSL.
+pub(crate) type OcclusionVariants<P> = Variants<1, P>;
+
 /// Variants of a pipeline by the values of `N` overrides.
 pub(crate) struct Variants<const N: usize, P> {
     /// By the values as bits, the first override in the lowest.
@@ -49,6 +52,11 @@ impl<P> LampVariants<P> {
     /// Variants that `make` creates.
     pub(crate) fn new(make: impl Fn([Constant; 1]) -> P + wgpu::WasmNotSendSync + 'static) -> Self {
         Self::by(["has_lamps"], make)
+    }
+
+    /// Variants without and with tests for occlusion that `make` creates.
+    pub(crate) fn tested(make: impl Fn([Constant; 1]) -> P + wgpu::WasmNotSendSync + 'static) -> Self {
+        Self::by(["tests_occlusion"], make)
     }
 
     /// The variant for a frame with or without lamps.

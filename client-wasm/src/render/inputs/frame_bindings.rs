@@ -1,6 +1,6 @@
 //! Bind group 0, which all passes share: uniforms, heights, normals, cover, bend atlas, wind, noise, shadow map, sky, repeated patch, shade of the grass.
 
-use crate::render::gpu::constants::SHADE_PX;
+use crate::render::gpu::constants::{SHADE_MAPS, SHADE_PX};
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::mipmaps::{all_mipmaps, box_mipmaps};
 use crate::render::gpu::pipeline::{DEPTH, bind, sampled, sampler, texture, uniform};
@@ -8,6 +8,7 @@ use crate::render::gpu::uniforms::Frame;
 use crate::render::inputs::bend_atlas::BendAtlas;
 use crate::render::inputs::cascades::SHADOW_CASCADES;
 use crate::render::inputs::daylight::Daylight;
+use crate::render::inputs::depth_pyramid::pyramid_buffer;
 use crate::render::inputs::grass_kinds;
 use crate::render::inputs::noise_texture::{NOISE_PX, noise};
 use crate::render::inputs::repeated_patch::RepeatedTextures;
@@ -21,6 +22,8 @@ use wgpu::{TextureFormat, TextureSampleType, TextureViewDimension};
 /// Layout of bind group 0, and its resources that outlive a scene.
 pub(crate) struct FrameBindings {
     pub(crate) layout: wgpu::BindGroupLayout,
+    /// Depth pyramid of the picture, which is not in the group: passes that test it have it in their own.
+    pub(crate) pyramid: wgpu::Buffer,
     uniforms: wgpu::Buffer,
     sky: wgpu::TextureView,
     noise: wgpu::TextureView,
@@ -36,7 +39,7 @@ pub(crate) struct SceneTextures {
     pub(crate) atlas: BendAtlas,
     pub(crate) repeated: RepeatedTextures,
     pub(crate) wind: WindTexture,
-    /// Map of the shade that grass casts.
+    /// Maps of the shade that grass casts.
     pub(crate) shade: wgpu::Texture,
     /// Bind group 0 of all passes but the shadow pass.
     pub(crate) group: wgpu::BindGroup,
@@ -63,7 +66,7 @@ impl FrameBindings {
             texture(13),
             texture(14),
             texture(15),
-            texture(16),
+            sampled(16, TextureSampleType::Float { filterable: true }, TextureViewDimension::D2Array),
         ];
         let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("frame"), entries: &entries });
         let linear = |mode, compare| {
@@ -81,6 +84,7 @@ impl FrameBindings {
         let noise = gpu.texture("noise", TextureFormat::Rgba8Unorm, [NOISE_PX; 2], &noise());
         Self {
             layout,
+            pyramid: pyramid_buffer(gpu),
             uniforms: gpu.empty_buffer("frame", size_of::<Frame>() as u64, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST),
             sky: view(daylight.texture()),
             noise: view(&noise),
@@ -121,11 +125,11 @@ fn depth_texture(gpu: &Gpu, side_px: u32, layers: u32) -> wgpu::Texture {
     })
 }
 
-/// Map of the shade that grass casts, without shade.
+/// Maps of the shade that grass casts, without shade.
 fn shade_texture(gpu: &Gpu) -> wgpu::Texture {
     gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some("shade of grass"),
-        size: wgpu::Extent3d { width: SHADE_PX, height: SHADE_PX, depth_or_array_layers: 1 },
+        size: wgpu::Extent3d { width: SHADE_PX, height: SHADE_PX, depth_or_array_layers: SHADE_MAPS },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
@@ -157,10 +161,10 @@ impl SceneTextures {
             use wgpu::BindingResource::{Sampler, TextureView};
             let views = [&height_texture, &normal_texture, &cover_texture, &wind.texture, &kind_texture].map(view);
             let [heights, normals, cover, winds, kind_map] = &views;
-            let [leans, near, shade] = &[&repeated.leans, &repeated.near, &shade].map(view);
+            let [leans, near] = &[&repeated.leans, &repeated.near].map(view);
             let layers = wgpu::TextureViewDescriptor { dimension: Some(TextureViewDimension::D2Array), ..Default::default() };
             let bends = &atlas.texture.create_view(&layers);
-            let shadows = &shadows.create_view(&layers);
+            let [shadows, shade] = &[shadows, &shade].map(|texture| texture.create_view(&layers));
             let resources = [
                 frame.uniforms.as_entire_binding(),
                 TextureView(heights),

@@ -12,9 +12,11 @@ use crate::render::options::quality::Quality;
 use crate::state::DecodedScene;
 use bytemuck::Zeroable;
 use glam::{Mat4, Quat, Vec3};
+use prairie_core::bend::wind_lean_rad;
 use prairie_core::light::shade;
 use prairie_core::light::sun::Sun;
-use prairie_core::plant::snow_load::relative_load;
+use prairie_core::plant::snow_load::{load_share, relative_load};
+use prairie_core::plant::tree::statics::TREE_LEAF_AREA_INDEX;
 use prairie_core::scene::{Objects, Plants, Scene, VehicleKind, Wind};
 use prairie_core::wind;
 use prairie_core::wire::ObjectPose;
@@ -126,13 +128,14 @@ impl<'a> View<'a> {
     fn shade_and_snow(&self, scene: &Scene) -> Frame {
         let (eye, snow_load) = (self.camera.eye_m, relative_load(&scene.snow, leaf_area(&scene.plants)));
         Frame {
-            shade_corner_m: shade_corner_m([eye.x, eye.z]),
-            shade_extent_m: SHADE_PX as f32 * SHADE_CELL_M,
+            shade_corner_m: shade_corner_m([eye.x, eye.z], SHADE_CELL_M[0]),
+            shade_far_corner_m: shade_corner_m([eye.x, eye.z], SHADE_CELL_M[1]),
             shade_strength: 0.0,
             shade_top_m: scene.plants.most_grown() * scene.tallest_m(),
-            shade_extinction: even_depth(&scene.plants, 1.0 + snow_load, self.sun),
+            shade_extinction: even_depth(scene, 1.0 + snow_load, self.sun),
             snow_m: scene.snow.depth_m,
             snow_load,
+            crown_snow: load_share(&scene.snow, TREE_LEAF_AREA_INDEX),
             ..Frame::zeroed()
         }
     }
@@ -184,15 +187,16 @@ impl From<&wind::turbulence::GustWave> for GustWave {
     }
 }
 
-/// Corner of the map of the shade around the eye (m): a multiple of its cells, so that it does not flicker as the eye moves.
-fn shade_corner_m(eye_m: [f32; 2]) -> [f32; 2] {
-    eye_m.map(|m| ((m / SHADE_CELL_M).floor() - 0.5 * SHADE_PX as f32) * SHADE_CELL_M)
+/// Corner of a map of the shade around the eye (m): a multiple of its cells, so that it does not flicker as the eye moves.
+fn shade_corner_m(eye_m: [f32; 2], cell_m: f32) -> [f32; 2] {
+    eye_m.map(|m| ((m / cell_m).floor() - 0.5 * SHADE_PX as f32) * cell_m)
 }
 
-/// Optical depth towards the sun of upright grass of the first kind, of a mass relative to its own.
-fn even_depth(plants: &Plants, laden_mass: f32, sun: Sun) -> f32 {
-    let [_, depth] = shade::stance([0.0; 2], laden_mass, sun.direction());
-    leaf_area(plants) * depth
+/// Optical depth towards the sun of grass of the first kind in the mean wind, of a mass relative to its own.
+fn even_depth(scene: &Scene, laden_mass: f32, sun: Sun) -> f32 {
+    let lean_rad = wind_lean_rad(scene.wind.mean_m_per_s, scene.grass.wind_bend_rad);
+    let [_, depth] = shade::stance(lean_rad, laden_mass, sun.direction());
+    leaf_area(&scene.plants) * depth
 }
 
 /// 1 if the wind domain repeats along X, and along Z.

@@ -1,6 +1,6 @@
 //! Shade that grass casts on grass and ground: compute passes that follow rays to the sun through the sward around the camera.
 
-use crate::render::gpu::constants::{SHADE_CELLS, SHADE_PX, WORKGROUP_SIZE};
+use crate::render::gpu::constants::{SHADE_CELLS, SHADE_MAPS, SHADE_PX, WORKGROUP_SIZE};
 use crate::render::gpu::pipeline::{PassFactory, bind_as, storage_rw};
 use crate::render::gpu::shaders;
 use wgpu::BufferUsages;
@@ -22,7 +22,7 @@ pub(crate) struct ShadeMap {
 impl ShadeMap {
     pub(crate) fn new(factory: &PassFactory) -> Self {
         let gpu = &factory.gpu;
-        let cells = u64::from(SHADE_CELLS);
+        let cells = u64::from(SHADE_MAPS * SHADE_CELLS);
         let columns = gpu.empty_buffer("columns of grass", cells * COLUMN_BYTES, BufferUsages::STORAGE);
         let texels = gpu.empty_buffer(
             "texels of the shade",
@@ -51,13 +51,13 @@ impl ShadeMap {
         pass.set_bind_group(1, &self.group, &[]);
         for pipeline in &self.passes {
             pass.set_pipeline(pipeline);
-            pass.dispatch_workgroups(SHADE_CELLS.div_ceil(WORKGROUP_SIZE), 1, 1);
+            pass.dispatch_workgroups((SHADE_MAPS * SHADE_CELLS).div_ceil(WORKGROUP_SIZE), 1, 1);
         }
     }
 
     /// Copies the shade to the texture that the other passes sample.
-    pub(crate) fn show(&self, encoder: &mut wgpu::CommandEncoder, map: &wgpu::Texture) {
+    pub(crate) fn show(&self, encoder: &mut wgpu::CommandEncoder, maps: &wgpu::Texture) {
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(SHADE_PX * TEXEL_BYTES), rows_per_image: Some(SHADE_PX) };
-        encoder.copy_buffer_to_texture(wgpu::TexelCopyBufferInfo { buffer: &self.texels, layout }, map.as_image_copy(), map.size());
+        encoder.copy_buffer_to_texture(wgpu::TexelCopyBufferInfo { buffer: &self.texels, layout }, maps.as_image_copy(), maps.size());
     }
 }

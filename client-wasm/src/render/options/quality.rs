@@ -64,6 +64,8 @@ struct Preset {
     /// Buffer for the underbrush in view, and again for its rows (bytes): four times what the shipped scenes fill at 960 × 540. Where rows do not fit, plants
     /// are drawn more coarsely and finally left out.
     underbrush_bytes: u64,
+    /// Whether near underbrush is drawn as curves with veins.
+    has_close_ups: bool,
     /// Radius of the bend field that the client requests (m).
     bend_radius_m: f32,
 }
@@ -95,6 +97,7 @@ const PRESETS: [Preset; 5] = [
         motes: 3000,
         puffs: (1024, 130.0),
         underbrush_bytes: 16 << 20,
+        has_close_ups: false,
         bend_radius_m: 96.0,
     },
     Preset {
@@ -122,6 +125,7 @@ const PRESETS: [Preset; 5] = [
         motes: 6000,
         puffs: (3072, 200.0),
         underbrush_bytes: 32 << 20,
+        has_close_ups: false,
         bend_radius_m: 128.0,
     },
     Preset {
@@ -149,6 +153,7 @@ const PRESETS: [Preset; 5] = [
         motes: 14_000,
         puffs: (4096, 220.0),
         underbrush_bytes: 64 << 20,
+        has_close_ups: true,
         bend_radius_m: 192.0,
     },
     ULTRA,
@@ -195,6 +200,7 @@ const ULTRA: Preset = Preset {
     motes: 28_000,
     puffs: (8192, 280.0),
     underbrush_bytes: 128 << 20,
+    has_close_ups: true,
     bend_radius_m: 256.0,
 };
 
@@ -330,6 +336,11 @@ impl Quality {
     /// Buffer for the underbrush in view, and again for its rows (bytes).
     pub(crate) fn underbrush_bytes(self) -> u64 {
         self.preset().underbrush_bytes
+    }
+
+    /// Whether near underbrush is drawn as curves with veins.
+    pub(crate) fn has_close_ups(self) -> bool {
+        self.preset().has_close_ups
     }
 
     /// Radius of the bend field that the client requests (m).

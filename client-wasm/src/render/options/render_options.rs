@@ -85,6 +85,18 @@ impl FarPlants {
     }
 }
 
+/// When plants and solids behind trees, stones and other solids are culled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Occlusion {
+    /// Never.
+    Never,
+    /// Where solids cover so much of the picture that it is worthwhile.
+    #[default]
+    Adaptive,
+    /// In all frames.
+    Always,
+}
+
 /// Options of a frame; may change from frame to frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderOptions {
@@ -100,7 +112,9 @@ pub struct RenderOptions {
     pub shows_grids: bool,
     /// Whether things outside the view or behind hills are culled; the picture is the same without.
     pub culls: bool,
-    /// Whether grass casts shadows on grass and ground.
+    /// When things behind trees, stones and other solids are culled, too, if [`culls`](Self::culls) is set; the picture is the same without.
+    pub occlusion: Occlusion,
+    /// Whether grass casts shadows on grass and ground; without them it is shaded by the height above the ground alone.
     pub grass_shadows: bool,
     /// Position of the sun; `None`: the scene's.
     pub sun: Option<Sun>,
@@ -111,17 +125,20 @@ pub struct RenderOptions {
 impl RenderOptions {
     /// Name of the option that turns culling off.
     const UNCULLED: &str = "unculled";
+    /// Name of the option that turns culling behind solids off, and of the one that tests for it in all frames.
+    const UNOCCLUDED: &str = "unoccluded";
+    const OCCLUDED: &str = "occluded";
     /// Name of the option that raises the wind with distance.
     const RAISED: &str = "raised";
     /// Name of the option that shows the map of the grids.
     const GRIDS: &str = "grids";
-    /// Name of the option that lets grass cast shadows.
-    const SHADOWED: &str = "shadowed";
+    /// Name of the option that lets grass cast no shadows.
+    const UNSHADOWED: &str = "unshadowed";
 
     /// Names of all options that [`with`](Self::with) accepts.
     pub fn names() -> impl Iterator<Item = &'static str> {
         let (far_plants, orders) = (FarPlants::ALL.into_iter().map(FarPlants::name), BlendOrder::ALL.into_iter().map(BlendOrder::name));
-        far_plants.chain(orders).chain([Self::UNCULLED, Self::RAISED, Self::GRIDS, Self::SHADOWED])
+        far_plants.chain(orders).chain([Self::UNCULLED, Self::UNOCCLUDED, Self::OCCLUDED, Self::RAISED, Self::GRIDS, Self::UNSHADOWED])
     }
 
     /// A copy of the options with the named one set; `None` if the name is unknown.
@@ -130,9 +147,11 @@ impl RenderOptions {
         let order = BlendOrder::from_name(name).map(|blend_order| Self { blend_order, ..self });
         let switched = || match name {
             Self::UNCULLED => Some(Self { culls: false, ..self }),
+            Self::UNOCCLUDED => Some(Self { occlusion: Occlusion::Never, ..self }),
+            Self::OCCLUDED => Some(Self { occlusion: Occlusion::Always, ..self }),
             Self::RAISED => Some(Self { raises_far_wind: true, ..self }),
             Self::GRIDS => Some(Self { shows_grids: true, ..self }),
-            Self::SHADOWED => Some(Self { grass_shadows: true, ..self }),
+            Self::UNSHADOWED => Some(Self { grass_shadows: false, ..self }),
             _ => None,
         };
         far_plants.or(order).or_else(switched)
@@ -147,7 +166,8 @@ impl Default for RenderOptions {
             raises_far_wind: false,
             shows_grids: false,
             culls: true,
-            grass_shadows: false,
+            occlusion: Occlusion::default(),
+            grass_shadows: true,
             sun: None,
             shell_layers: None,
         }
@@ -169,6 +189,7 @@ mod tests {
                 options.blend_order != own.blend_order,
                 options.far_plants != own.far_plants,
                 options.culls != own.culls,
+                options.occlusion != own.occlusion,
                 options.raises_far_wind != own.raises_far_wind,
                 options.shows_grids != own.shows_grids,
                 options.grass_shadows != own.grass_shadows,

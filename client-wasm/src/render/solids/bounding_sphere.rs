@@ -3,7 +3,7 @@
 use crate::render::gpu::constants::FLUTTER_M;
 use crate::render::solids::mesh::Solid;
 use crate::render::solids::trees_and_stones::PlacedModel;
-use glam::Vec3;
+use glam::{Mat4, Vec3};
 
 /// Maximum flutter of leaves (m): 1.9 times along (1, 0.6, -1).
 const FLUTTER_LIMIT_M: f32 = 0.103;
@@ -23,6 +23,21 @@ impl BoundingSphere {
         let [low, high] = positions.iter().fold([f32::MAX, f32::MIN], |[low, high], at| [low.min(at.y), high.max(at.y)]);
         let centre_m = Vec3::Y * (0.5 * (low + high));
         Self { centre_m, radius_m: positions.iter().map(|at| at.distance(centre_m)).fold(0.0, f32::max) }
+    }
+
+    /// Sphere around a mesh and the middle of its box.
+    pub(crate) fn around_mesh(solid: &Solid) -> Self {
+        let positions = solid.vertices.iter().map(|vertex| Vec3::from(vertex.position));
+        let ends = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+        let [low, high] = positions.clone().fold(ends, |[low, high], at| [low.min(at), high.max(at)]);
+        let centre_m = if solid.vertices.is_empty() { Vec3::ZERO } else { 0.5 * (low + high) };
+        Self { centre_m, radius_m: positions.map(|at| at.distance(centre_m)).fold(0.0, f32::max) }
+    }
+
+    /// The sphere around a rigid instance of the model.
+    pub(crate) fn moved(self, matrix: &Mat4) -> Self {
+        let larger = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(|axis| axis.length()).into_iter().fold(0.0, f32::max);
+        Self { centre_m: matrix.transform_point3(self.centre_m), radius_m: self.radius_m * larger }
     }
 
     /// The sphere around an instance of the model, including its sway in the wind.

@@ -6,9 +6,10 @@ use crate::render::solids::mesh::{Solid, Vertex};
 use crate::render::solids::trees_and_stones::{BARK, TREE_SHAPES, TreeDetail, TreeForm};
 use glam::Vec3;
 use prairie_core::GRAVITY_M_PER_S2;
+use prairie_core::plant::snow_load::relative_load;
 use prairie_core::plant::tree::colonise::CrownForm;
 use prairie_core::plant::tree::skeleton::{Skeleton, Wood};
-use prairie_core::plant::tree::statics::{LimbFrame, TreePlan};
+use prairie_core::plant::tree::statics::{LimbFrame, TREE_LEAF_AREA_INDEX, TreePlan};
 use prairie_core::plant::underbrush::plant::{Forces, LookUp, Posed, Stand, posed};
 use prairie_core::scene::{Scene, TreeShape};
 use std::f32::consts::TAU;
@@ -36,15 +37,16 @@ impl GrownTree {
     /// All shapes of a scene; none if its trees are modelled.
     pub(crate) fn of_scene(scene: &Scene) -> Vec<Self> {
         let shapes = if scene.plants.tree_shape == TreeShape::Grown { TREE_SHAPES } else { 0 };
-        (0..shapes).map(|shape| Self::new(shape, scene.plants.tree_m)).collect()
+        let snow_load = relative_load(&scene.snow, TREE_LEAF_AREA_INDEX);
+        (0..shapes).map(|shape| Self::new(shape, scene.plants.tree_m, snow_load)).collect()
     }
 
-    /// A shape, for trees of that height (m).
-    pub(crate) fn new(shape: u32, tree_m: f32) -> Self {
+    /// A shape, for trees of that height (m) whose leaves bear snow of a mass relative to their own.
+    pub(crate) fn new(shape: u32, tree_m: f32, snow_load: f32) -> Self {
         let TreeForm { crown, is_cone, trunk_top, .. } = TreeForm::new(shape, &mut Random::new(SEED.into()));
         let form = CrownForm { low: crown.low, high: crown.high, wide: crown.wide, is_cone, trunk_top };
         let skeleton = Skeleton::grown(&form, SEED + shape);
-        let statics = TreePlan::new(&form, &skeleton, tree_m);
+        let statics = TreePlan::new(&form, &skeleton, tree_m, snow_load);
         Self { shape, skeleton, statics }
     }
 
@@ -185,7 +187,7 @@ mod tests {
     #[test]
     fn meshes_follow_components_that_bend_at_their_level() {
         for shape in 0..TREE_SHAPES {
-            let tree = GrownTree::new(shape, 7.0);
+            let tree = GrownTree::new(shape, 7.0, 0.0);
             let [fine, coarse, distant] = TreeDetail::ALL.map(|detail| tree.mesh(detail));
             for (mesh, detail) in [(&fine, TreeDetail::Fine), (&coarse, TreeDetail::Coarse), (&distant, TreeDetail::Distant)] {
                 let limbs: Vec<usize> = mesh.vertices.iter().map(|vertex| vertex.normal[3] as usize).collect();

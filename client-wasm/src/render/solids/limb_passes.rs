@@ -4,7 +4,7 @@ use crate::render::gpu::constants::{NO_LIMBS, TREE_SECTIONS, WORKGROUP_SIZE};
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::{PassFactory, bind_as, storage, storage_rw};
 use crate::render::solids::grown_trees::GrownTree;
-use crate::render::solids::objects::Instance;
+use crate::render::solids::instances::Instance;
 use crate::render::solids::trees_and_stones::TreeDetail;
 use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages;

@@ -1,5 +1,6 @@
 //! Meshes of all vehicles, gates, trees, stones and models of the scene's own in one vertex and one index buffer.
 
+use crate::render::gpu::constants::DRAW_WORDS;
 use crate::render::gpu::device::Gpu;
 use crate::render::solids::bounding_sphere::BoundingSphere;
 use crate::render::solids::gates::{self, GatePart};
@@ -8,7 +9,7 @@ use crate::render::solids::mesh::{Paint, Solid};
 use crate::render::solids::trees_and_stones::{self, PlacedKind, PlacedModel, STONE_SHAPES, TREE_SHAPES, TreeDetail};
 use crate::render::solids::vehicles::vehicle_model;
 use crate::state::DecodedScene;
-use glam::{Vec2, Vec3};
+use glam::{Mat4, Vec2, Vec3};
 use prairie_core::scene::VehicleKind;
 use prairie_core::wire::{Mesh, ModelUse};
 use std::ops::Range;
@@ -32,6 +33,8 @@ pub(crate) struct ModelMeshes {
     first_tree: usize,
     /// Bounding spheres of the tree shapes, then of the stone shapes, then of the models.
     bounds: Vec<BoundingSphere>,
+    /// Bounding sphere of each mesh at rest.
+    spheres: Vec<BoundingSphere>,
 }
 
 impl ModelMeshes {
@@ -68,6 +71,7 @@ impl ModelMeshes {
             first_gate_part,
             first_tree,
             bounds: Vec::new(),
+            spheres: solids.iter().map(BoundingSphere::around_mesh).collect(),
         };
         let of_tree = |shape| TreeDetail::ALL.map(|detail| &solids[meshes.tree(shape, detail)]);
         let modelled = |shape| BoundingSphere::around_meshes(of_tree(shape).into_iter());
@@ -86,6 +90,11 @@ impl ModelMeshes {
             PlacedKind::Own => TREE_SHAPES + STONE_SHAPES,
         };
         self.bounds[(first + placed.shape) as usize].placed(placed)
+    }
+
+    /// Bounding sphere of a rigid mesh in its place.
+    pub(crate) fn sphere_of(&self, mesh: usize, world_from_mesh: &Mat4) -> BoundingSphere {
+        self.spheres[mesh].moved(world_from_mesh)
     }
 
     /// Mesh of a part of a vehicle.
@@ -123,14 +132,22 @@ impl ModelMeshes {
         self.ranges[mesh].indices.len() as u64 / 3
     }
 
-    /// Draws the listed meshes, each with its instances.
-    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, list: &[(usize, Range<u32>)]) {
+    /// Indirect draw of a mesh without instances.
+    pub(crate) fn indirect_draw(&self, mesh: usize) -> [u32; DRAW_WORDS as usize] {
+        let MeshRange { indices, base_vertex } = &self.ranges[mesh];
+        [indices.len() as u32, 0, indices.start, *base_vertex as u32, 0]
+    }
+
+    /// Sets the shared buffers for draws.
+    pub(crate) fn set(&self, pass: &mut wgpu::RenderPass<'_>) {
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
-        for (mesh, instances) in list {
-            let range = &self.ranges[*mesh];
-            pass.draw_indexed(range.indices.clone(), range.base_vertex, instances.clone());
-        }
+    }
+
+    /// Draws a mesh with a range of instances.
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, mesh: usize, instances: Range<u32>) {
+        let range = &self.ranges[mesh];
+        pass.draw_indexed(range.indices.clone(), range.base_vertex, instances);
     }
 }
 

@@ -1,33 +1,34 @@
 //! Draws vehicles, trees, stones, models of the scene's own and gates, in the picture and in the shadow map.
 
-use crate::render::gpu::constants::{NO_LIMBS, WORKGROUP_SIZE};
+use crate::render::gpu::constants::{DRAW_WORDS, WORKGROUP_SIZE};
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind_as, bind_at, storage, storage_rw, texture};
 use crate::render::gpu::shaders;
 use crate::render::gpu::variants::LampVariants;
 use crate::render::inputs::frustum::CascadeVolume;
+use crate::render::inputs::lowest_land::LowestLand;
 use crate::render::inputs::viewpoint::Viewpoint;
 use crate::render::options::quality::Quality;
+use crate::render::options::render_options::Occlusion;
 use crate::render::solids::bounding_sphere::BoundingSphere;
 use crate::render::solids::gates::{self, PlacedPart};
 use crate::render::solids::grown_trees::GrownTree;
+use crate::render::solids::instances::{DrawList, INSTANCE_LIMIT, Instance, InstanceLists, RIGID_MARKS, join};
 use crate::render::solids::leaf_texture::{LEAF_PX, leaves};
 use crate::render::solids::limb_passes::LimbPasses;
 use crate::render::solids::mesh::{VERTEX_ATTRIBUTES, Vertex};
 use crate::render::solids::model_meshes::ModelMeshes;
-use crate::render::solids::spatial_index::SpatialIndex;
+use crate::render::solids::occlusion::{Phase, SolidOcclusion, Tested};
+use crate::render::solids::spatial_index::{NearModel, SpatialIndex};
 use crate::render::solids::trees_and_stones::{PlacedKind, PlacedModel, TreeDetail};
 use crate::render::solids::vehicles::{Motion, vehicle_model};
 use crate::state::{DecodedScene, OBJECT_LIMIT};
-use bytemuck::{Pod, Zeroable};
 use glam::{Affine3A, Mat4, Quat, Vec3};
 use prairie_core::wire::{ObjectId, ObjectPose};
 use std::collections::HashMap;
 use std::ops::Range;
 use wgpu::BufferUsages;
 
-/// Maximum number of instances in a frame.
-const INSTANCE_LIMIT: usize = 12_288;
 /// Instances reserved for each vehicle: six parts, in the picture and in two cascades.
 const VEHICLE_INSTANCES: usize = 18;
 /// Color factor of the ghost's vehicle, which turns every paint into a pale blue.
@@ -37,42 +38,12 @@ const SWAY_BYTES: usize = 16;
 /// Minimum height on screen of fine trees, and maximum of distant ones (px), at high quality.
 pub(crate) const FINE_TREE_PX: f32 = 130.0;
 pub(crate) const DISTANT_TREE_PX: f32 = 26.0;
+/// Solids are tested for occlusion if those in view have at least so many triangles, or if the bounding spheres of those that are not trees cover at least this
+/// fraction of the picture, each counted by itself.
+const OCCLUDING_TRIANGLES: u64 = 65_536;
+const OCCLUDING_SHARE: f32 = 0.5;
 /// Detail of the trees in each shadow cascade.
 const SHADOW_DETAIL: [TreeDetail; 2] = [TreeDetail::Coarse, TreeDetail::Distant];
-
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct Instance {
-    world_from_model: [f32; 16],
-    tint: [f32; 4],
-    /// First of its bent components, or `NO_LIMBS`; allocated once all instances are listed.
-    pub(super) first_bent: u32,
-    /// First component of its shape, and the number of those that bend.
-    first_limb: u32,
-    pub(super) limbs: u32,
-    unused: u32,
-}
-
-impl Instance {
-    /// An instance without components.
-    fn new(world_from_model: &Mat4, tint: [f32; 4]) -> Self {
-        Self { world_from_model: world_from_model.to_cols_array(), tint, first_bent: NO_LIMBS, first_limb: 0, limbs: 0, unused: 0 }
-    }
-
-    /// The instance with `limbs` components from `first_limb` on.
-    fn with_limbs(self, [first_limb, limbs]: [u32; 2]) -> Self {
-        Self { first_limb, limbs, ..self }
-    }
-}
-
-/// Instances by mesh: in the picture, and in each cascade.
-struct InstanceLists {
-    picture: Vec<Vec<Instance>>,
-    cascades: [Vec<Vec<Instance>>; 2],
-}
-
-/// Meshes to draw, each with its range of instances.
-type DrawList = Vec<(usize, Range<u32>)>;
 
 struct Pipelines {
     /// Pipeline for vehicles and gates, which may be glossy.
@@ -96,6 +67,7 @@ pub(crate) struct ObjectPasses {
     /// Bends the components of trees that have any.
     limbs: Option<LimbPasses>,
     index: SpatialIndex,
+    land: LowestLand,
     /// Parts of the gates of the scene's race.
     gates: Vec<PlacedPart>,
     /// Gate that is marked as the next one.
@@ -106,6 +78,9 @@ pub(crate) struct ObjectPasses {
     rolled_m: HashMap<ObjectId, f32>,
     picture_list: DrawList,
     cascade_lists: [DrawList; 2],
+    occlusion: SolidOcclusion,
+    /// Whether the solids of the newest frame are tested for occlusion.
+    occludes: bool,
 }
 
 impl ObjectPasses {
@@ -125,6 +100,7 @@ impl ObjectPasses {
         let bent = LimbPasses::bent(gpu, is_grown);
         let texture = wgpu::BindingResource::TextureView(&leaves);
         let resources = [(0, instances.as_entire_binding()), (1, texture), (2, sways.as_entire_binding()), (4, bent.as_entire_binding())];
+        let occlusion = SolidOcclusion::new(factory, RIGID_MARKS + index.count());
         let sway_layout = factory.layout("blow", &[storage(0), storage_rw(3)]);
         Self {
             pipelines: pipelines(factory.clone(), quality, layout.clone(), is_grown),
@@ -137,12 +113,15 @@ impl ObjectPasses {
             instances,
             meshes,
             index,
+            land: LowestLand::new(decoded, decoded.scene().plants.grid_m),
             gates: gates::placed(decoded),
             next_gate: None,
             ghost: None,
             rolled_m: HashMap::new(),
             picture_list: Vec::new(),
             cascade_lists: Default::default(),
+            occlusion,
+            occludes: false,
         }
     }
 
@@ -162,15 +141,28 @@ impl ObjectPasses {
         pixel_rad: f32,
     ) {
         let by_mesh = vec![Vec::new(); self.meshes.count()];
-        let mut lists = InstanceLists { cascades: [by_mesh.clone(), by_mesh.clone()], picture: by_mesh };
-        self.list_vehicles(&mut lists, poses, from.dt_secs, &cascades, time_secs);
-        self.list_gates(&mut lists, &cascades);
-        self.list_ghost(&mut lists, time_secs);
+        let tested = vec![Vec::new(); self.meshes.count()];
+        let mut lists = InstanceLists { cascades: [by_mesh.clone(), by_mesh.clone()], picture: by_mesh, tested, rigid: 0 };
+        self.list_vehicles(&mut lists, poses, from, &cascades, time_secs);
+        self.list_gates(&mut lists, from, &cascades);
+        self.list_ghost(&mut lists, from, time_secs);
         let taken = VEHICLE_INSTANCES * (OBJECT_LIMIT.min(poses.len()) + 1) + 3 * self.gates.len();
         let room = INSTANCE_LIMIT.saturating_sub(taken);
         self.list_placed(&mut lists, from, &cascades, room / 3, pixel_rad);
         let mut all = Vec::new();
         self.picture_list = join(&lists.picture, &mut all);
+        self.occludes = from.options.culls
+            && match from.options.occlusion {
+                Occlusion::Never => false,
+                Occlusion::Adaptive => {
+                    let trees = self.meshes.tree(0, TreeDetail::Fine)..self.meshes.stone(0);
+                    self.triangles() >= OCCLUDING_TRIANGLES || lists.share(&trees, from.eye_m, from.picture_sr) >= OCCLUDING_SHARE
+                }
+                Occlusion::Always => true,
+            };
+        if self.occludes {
+            self.prepare_occlusion(gpu, &lists.tested);
+        }
         self.cascade_lists = lists.cascades.map(|list| join(&list, &mut all));
         if let Some(limbs) = &mut self.limbs {
             limbs.assign(gpu, &mut all);
@@ -179,11 +171,20 @@ impl ObjectPasses {
         gpu.queue.write_buffer(&self.instances, 0, bytemuck::cast_slice(&all));
     }
 
+    /// Sets the bounds and the draws of the listed instances.
+    fn prepare_occlusion(&mut self, gpu: &Gpu, tested: &[Vec<Tested>]) {
+        let meshes: Vec<(Range<u32>, [u32; DRAW_WORDS as usize])> =
+            self.picture_list.iter().map(|(mesh, instances)| (instances.clone(), self.meshes.indirect_draw(*mesh))).collect();
+        let listed = |(mesh, instances): &(usize, Range<u32>)| &tested[*mesh][..instances.len()];
+        let tested = self.picture_list.iter().flat_map(listed).copied().collect::<Vec<_>>();
+        self.occlusion.prepare(gpu, &tested, &meshes);
+    }
+
     fn list_vehicles(
         &mut self,
         lists: &mut InstanceLists,
         poses: &[ObjectPose],
-        dt_secs: f32,
+        from: &Viewpoint<'_>,
         cascades: &[Option<CascadeVolume>; 2],
         time_secs: f32,
     ) {
@@ -192,13 +193,13 @@ impl ObjectPasses {
             let rotation = Quat::from_array(pose.rotation);
             let forward = rotation * Vec3::NEG_Z;
             let rolled_m = self.rolled_m.entry(pose.id).or_default();
-            *rolled_m = (*rolled_m + Vec3::from(pose.velocity_m_per_s).dot(forward) * dt_secs) % 1000.0;
+            *rolled_m = (*rolled_m + Vec3::from(pose.velocity_m_per_s).dot(forward) * from.dt_secs) % 1000.0;
             let body = Affine3A::from_rotation_translation(rotation, Vec3::from(pose.position_m));
             let motion = Motion { rolled_m: *rolled_m, time_secs };
             for (part, body_from_part) in (vehicle_model(pose.kind).place)(pose, motion) {
                 let mesh = self.meshes.part(pose.kind, part);
                 let instance = Instance::new(&Mat4::from(body * body_from_part), [1.0, 1.0, 1.0, 0.0]);
-                lists.picture[mesh].push(instance);
+                lists.show_rigid(&self.meshes, mesh, instance, |bounds| is_seen(&self.land, from, bounds));
                 for (list, _) in lists.cascades.iter_mut().zip(cascades).filter(|(_, cascade)| cascade.is_some()) {
                     list[mesh].push(instance);
                 }
@@ -207,21 +208,23 @@ impl ObjectPasses {
     }
 
     /// Lists the ghost: a pale vehicle without a shadow.
-    fn list_ghost(&self, lists: &mut InstanceLists, time_secs: f32) {
+    fn list_ghost(&self, lists: &mut InstanceLists, from: &Viewpoint<'_>, time_secs: f32) {
         let Some(pose) = &self.ghost else { return };
         let body = Affine3A::from_rotation_translation(Quat::from_array(pose.rotation), Vec3::from(pose.position_m));
         for (part, body_from_part) in (vehicle_model(pose.kind).place)(pose, Motion { rolled_m: 0.0, time_secs }) {
-            lists.picture[self.meshes.part(pose.kind, part)].push(Instance::new(&Mat4::from(body * body_from_part), GHOST_TINT));
+            let instance = Instance::new(&Mat4::from(body * body_from_part), GHOST_TINT);
+            let mesh = self.meshes.part(pose.kind, part);
+            lists.show_rigid(&self.meshes, mesh, instance, |bounds| is_seen(&self.land, from, bounds));
         }
     }
 
     /// Lists all gates: there are few.
-    fn list_gates(&self, lists: &mut InstanceLists, cascades: &[Option<CascadeVolume>; 2]) {
+    fn list_gates(&self, lists: &mut InstanceLists, from: &Viewpoint<'_>, cascades: &[Option<CascadeVolume>; 2]) {
         for placed in &self.gates {
             let [r, g, b] = placed.tint(self.next_gate);
             let instance = Instance::new(&placed.world_from_part, [r, g, b, 0.0]);
             let mesh = self.meshes.gate_part(placed.part);
-            lists.picture[mesh].push(instance);
+            lists.show_rigid(&self.meshes, mesh, instance, |bounds| is_seen(&self.land, from, bounds));
             for (list, _) in lists.cascades.iter_mut().zip(cascades).filter(|(_, cascade)| cascade.is_some()) {
                 list[mesh].push(instance);
             }
@@ -237,16 +240,13 @@ impl ObjectPasses {
         limit: usize,
         pixel_rad: f32,
     ) {
-        let is_seen = |bounds: &BoundingSphere| {
-            let [low_m, high_m] = bounds.corners_m();
-            from.frustum.sees_box(low_m, high_m)
-        };
+        let is_seen = |bounds: &BoundingSphere| is_seen(&self.land, from, bounds);
         let casts = |cascade: &Option<CascadeVolume>, bounds: &BoundingSphere| {
             cascade.as_ref().is_some_and(|cascade| !from.options.culls || cascade.meets_sphere(bounds.centre_m, bounds.radius_m))
         };
         let may_show = |bounds: &BoundingSphere| is_seen(bounds) || cascades.iter().any(|cascade| casts(cascade, bounds));
         let mut spare = LimbPasses::spare(INSTANCE_LIMIT) as u32;
-        for (distance_m, (placed, bounds)) in self.index.near(from.eye_m, from.detail.trees_m, limit, may_show) {
+        for NearModel { distance_m, number, placed, bounds } in self.index.near(from.eye_m, from.detail.trees_m, limit, may_show) {
             let tall_px = placed.size_m / (distance_m * pixel_rad * from.detail.coarser);
             let detail = match tall_px {
                 FINE_TREE_PX.. => TreeDetail::Fine,
@@ -255,7 +255,7 @@ impl ObjectPasses {
             };
             if is_seen(bounds) {
                 let (mesh, instance) = self.instance(placed, detail, &mut spare);
-                lists.picture[mesh].push(instance);
+                lists.show(mesh, instance, *bounds, RIGID_MARKS + number);
             }
             for ((list, cascade), detail) in lists.cascades.iter_mut().zip(cascades).zip(SHADOW_DETAIL) {
                 if casts(cascade, bounds) {
@@ -288,7 +288,7 @@ impl ObjectPasses {
         self.pipelines.create_next()
     }
 
-    /// Triangles that [`draw`](Self::draw) submits.
+    /// Triangles of the solids in view, hidden ones included.
     pub(crate) fn triangles(&self) -> u64 {
         self.picture_list.iter().map(|(mesh, instances)| self.meshes.triangles(*mesh) * instances.len() as u64).sum()
     }
@@ -299,18 +299,46 @@ impl ObjectPasses {
         pass.set_bind_group(1, &self.sway_group, &[]);
         pass.dispatch_workgroups(self.count.div_ceil(WORKGROUP_SIZE), 1, 1);
         self.limbs.iter().for_each(|limbs| limbs.bend(pass));
+        if self.occludes {
+            self.occlusion.list_known(pass);
+        }
     }
 
-    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, has_lamps: bool) {
+    /// Whether this frame tests its solids for occlusion, and plants against them.
+    pub(crate) fn occludes(&self) -> bool {
+        self.occludes
+    }
+
+    /// Lists the solids of the second phase once the depth pyramid of the first one is complete.
+    pub(crate) fn list_new(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.occlusion.list_new(pass);
+    }
+
+    /// Numbers of solids in view and of those drawn, and of the triangles of the latter.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(crate) fn drawn(&self, read: impl Fn(&wgpu::Buffer) -> Vec<u8>) -> [u64; 3] {
+        let all = self.picture_list.iter().map(|(_, instances)| instances.len() as u64).sum();
+        let [solids, triangles] = if self.occludes { self.occlusion.drawn(&read(self.occlusion.draws())) } else { [all, self.triangles()] };
+        [all, solids, triangles]
+    }
+
+    pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, phase: Phase, has_lamps: bool) {
         let Pipelines { glossy, fine_trees, matte, coarse_trees } = self.pipelines.of(has_lamps);
         let ends = [self.meshes.tree(0, TreeDetail::Fine), self.meshes.tree(0, TreeDetail::Coarse), self.meshes.stone(0), usize::MAX];
-        let mut rest = self.picture_list.as_slice();
+        let mut next = 0;
+        self.meshes.set(pass);
+        pass.set_vertex_buffer(1, self.occlusion.all());
         for (pipeline, end) in [glossy, fine_trees, coarse_trees, matte].into_iter().zip(ends) {
-            let (list, others) = rest.split_at(rest.partition_point(|&(mesh, _)| mesh < end));
-            rest = others;
+            let first = next;
+            next = self.picture_list.partition_point(|&(mesh, _)| mesh < end);
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &self.group, &[]);
-            self.meshes.draw(pass, list);
+            for (number, (mesh, instances)) in self.picture_list.iter().enumerate().take(next).skip(first) {
+                match phase {
+                    Phase::Whole => self.meshes.draw(pass, *mesh, instances.clone()),
+                    Phase::Known | Phase::New => self.occlusion.draw(pass, phase, number, instances.start),
+                }
+            }
         }
     }
 
@@ -318,26 +346,33 @@ impl ObjectPasses {
     pub(crate) fn draw_shadows(&self, pass: &mut wgpu::RenderPass<'_>, cascade: usize) {
         pass.set_pipeline(&self.shadow_pipelines[cascade]);
         pass.set_bind_group(1, &self.group, &[]);
-        self.meshes.draw(pass, &self.cascade_lists[cascade]);
+        self.meshes.set(pass);
+        pass.set_vertex_buffer(1, self.occlusion.all());
+        for (mesh, instances) in &self.cascade_lists[cascade] {
+            self.meshes.draw(pass, *mesh, instances.clone());
+        }
     }
 }
 
-/// Appends the instances of all meshes to `all`, as far as there is room, and returns the range of each mesh.
-fn join(by_mesh: &[Vec<Instance>], all: &mut Vec<Instance>) -> DrawList {
-    let mut list = Vec::new();
-    for (mesh, instances) in by_mesh.iter().enumerate().filter(|(_, instances)| !instances.is_empty()) {
-        let first = all.len() as u32;
-        all.extend_from_slice(&instances[..instances.len().min(INSTANCE_LIMIT - all.len())]);
-        list.push((mesh, first..all.len() as u32));
-    }
-    list
-}
+/// Vertices, and the indices of the instances.
+const VERTEX_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 2] = [
+    Some(wgpu::VertexBufferLayout {
+        array_stride: size_of::<Vertex>() as u64,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &VERTEX_ATTRIBUTES,
+    }),
+    Some(wgpu::VertexBufferLayout {
+        array_stride: size_of::<u32>() as u64,
+        step_mode: wgpu::VertexStepMode::Instance,
+        attributes: &wgpu::vertex_attr_array![4 => Uint32],
+    }),
+];
 
-const VERTEX_BUFFERS: [Option<wgpu::VertexBufferLayout<'static>>; 1] = [Some(wgpu::VertexBufferLayout {
-    array_stride: size_of::<Vertex>() as u64,
-    step_mode: wgpu::VertexStepMode::Vertex,
-    attributes: &VERTEX_ATTRIBUTES,
-})];
+/// Whether a bounding sphere is in view and not behind hills.
+fn is_seen(land: &LowestLand, from: &Viewpoint<'_>, bounds: &BoundingSphere) -> bool {
+    let [low_m, high_m] = bounds.corners_m();
+    from.frustum.sees_box(low_m, high_m) && !(from.options.culls && land.hides(from.eye_m, from.ground_m, [low_m, high_m]))
+}
 
 fn pipelines(factory: PassFactory, quality: Quality, layout: wgpu::BindGroupLayout, is_grown: bool) -> LampVariants<Pipelines> {
     let draw = DrawDescriptor { label: "objects", buffers: &VERTEX_BUFFERS, ..DrawDescriptor::default() };

@@ -17,6 +17,16 @@ struct Square {
     models: Range<usize>,
 }
 
+/// A placed model near the eye.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NearModel<'a> {
+    pub(crate) distance_m: f32,
+    /// Its number among all models of the scene.
+    pub(crate) number: u32,
+    pub(crate) placed: &'a PlacedModel,
+    pub(crate) bounds: &'a BoundingSphere,
+}
+
 /// Placed models by square.
 pub(crate) struct SpatialIndex {
     /// Sorted by square.
@@ -39,35 +49,38 @@ impl SpatialIndex {
         Self { models, squares }
     }
 
-    /// Models up to `reach_m` from the eye with their distances, nearest squares first: at most the nearest `limit`, without those on squares for which
+    /// Number of all models.
+    pub(crate) fn count(&self) -> u32 {
+        self.models.len() as u32
+    }
+
+    /// Models up to `reach_m` from the eye, nearest squares first: at most the nearest `limit`, without those on squares for which
     /// `may_show` is false.
-    pub(crate) fn near(
-        &self,
-        eye_m: Vec3,
-        reach_m: f32,
-        limit: usize,
-        may_show: impl Fn(&BoundingSphere) -> bool,
-    ) -> Vec<(f32, &(PlacedModel, BoundingSphere))> {
+    pub(crate) fn near(&self, eye_m: Vec3, reach_m: f32, limit: usize, may_show: impl Fn(&BoundingSphere) -> bool) -> Vec<NearModel<'_>> {
         let first = self.squares.partition_point(|square| square.row < square_number(eye_m.z - reach_m));
         let end = self.squares.partition_point(|square| square.row <= square_number(eye_m.z + reach_m));
         let nearest_m = |square: &Square| square.bounds.centre_m.distance(eye_m) - square.bounds.radius_m;
         let with_distance = self.squares[first..end].iter().map(|square| (nearest_m(square), square));
         let mut squares: Vec<(f32, &Square)> = with_distance.filter(|(nearest_m, _)| *nearest_m < reach_m).collect();
         let within_reach = |square: &Square| {
-            let own = self.models[square.models.clone()].iter().map(|own| (own.0.position_m.distance(eye_m), own));
-            own.filter(|(distance_m, (placed, _))| *distance_m < reach_m * if placed.kind == PlacedKind::Stone { STONE_REACH } else { 1.0 })
+            let own = square.models.clone().zip(&self.models[square.models.clone()]).map(|(number, (placed, bounds))| NearModel {
+                distance_m: placed.position_m.distance(eye_m),
+                number: number as u32,
+                placed,
+                bounds,
+            });
+            own.filter(|own| own.distance_m < reach_m * if own.placed.kind == PlacedKind::Stone { STONE_REACH } else { 1.0 })
         };
         let mut limit_m = f32::INFINITY;
         if squares.iter().map(|(_, square)| square.models.len()).sum::<usize>() > limit {
-            let mut distances_m: Vec<f32> =
-                squares.iter().flat_map(|(_, square)| within_reach(square)).map(|(distance_m, _)| distance_m).collect();
+            let mut distances_m: Vec<f32> = squares.iter().flat_map(|(_, square)| within_reach(square)).map(|own| own.distance_m).collect();
             if distances_m.len() > limit {
                 limit_m = *distances_m.select_nth_unstable_by(limit, f32::total_cmp).1;
             }
         }
         squares.retain(|(_, square)| may_show(&square.bounds));
         squares.sort_by(|a, b| a.0.total_cmp(&b.0));
-        squares.into_iter().flat_map(|(_, square)| within_reach(square)).filter(|(distance_m, _)| *distance_m < limit_m).collect()
+        squares.into_iter().flat_map(|(_, square)| within_reach(square)).filter(|own| own.distance_m < limit_m).collect()
     }
 }
 
@@ -108,11 +121,11 @@ mod tests {
             let is_near = |own: &&(PlacedModel, BoundingSphere)| distance_m(own) < reach_m * if own.0.is_tree() { 1.0 } else { 0.4 };
             let wanted = sorted(all.iter().filter(is_near).filter(|own| may_show(&own.1)).map(distance_m));
             let near = index.near(eye_m, reach_m, all.len(), may_show);
-            let found = sorted(near.iter().filter(|(_, own)| may_show(&own.1)).map(|(distance_m, _)| *distance_m));
+            let found = sorted(near.iter().filter(|own| may_show(own.bounds)).map(|own| own.distance_m));
             assert!(wanted.len() > 60 && found == wanted, "{} of {}", found.len(), wanted.len());
             let nearest = sorted(all.iter().filter(is_near).map(distance_m));
             let few = index.near(eye_m, reach_m, 50, |_| true);
-            assert_eq!(sorted(few.iter().map(|(distance_m, _)| *distance_m)), nearest[..50]);
+            assert_eq!(sorted(few.iter().map(|own| own.distance_m)), nearest[..50]);
         }
     }
 }

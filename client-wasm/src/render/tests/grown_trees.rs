@@ -67,7 +67,8 @@ fn followed(gpu: &Gpu, picture: &OffscreenRenderer, tree: &GrownTree, vertices: 
 /// Runs `probe` of a WGSL source for each case, `count` times, with buffers: binding, and whether it is written.
 fn run(gpu: &Gpu, picture: &OffscreenRenderer, source: &str, buffers: &[(u32, &wgpu::Buffer, bool)], count: usize) {
     let frame_layout = picture.renderer.bindings.layout.clone();
-    let factory = PassFactory { gpu: gpu.clone(), frame_layout, samples: 1, has_kinds: true, soft_shadows: true, has_snow: false };
+    let pyramid = picture.renderer.bindings.pyramid.clone();
+    let factory = PassFactory { gpu: gpu.clone(), frame_layout, pyramid, samples: 1, has_kinds: true, soft_shadows: true, has_snow: false };
     let entries: Vec<_> =
         buffers.iter().map(|&(binding, _, is_written)| if is_written { storage_rw(binding) } else { storage(binding) }).collect();
     let layout = factory.layout("limbs", &entries);
@@ -90,7 +91,7 @@ fn trees_bend_as_in_the_core() {
     let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     picture.draw(&mut meadow(0.0), &Camera::default(), 0.0, 0.0);
     for shape in [0, TREE_SHAPES - 1] {
-        let tree = GrownTree::new(shape, TREE_M);
+        let tree = GrownTree::new(shape, TREE_M, 0.0);
         let mesh = tree.mesh(TreeDetail::Fine);
         let solid = mesh.vertices.iter().filter(|vertex| vertex.leaf == [0; 2]);
         let vertices: Vec<[f32; 4]> =
@@ -117,7 +118,7 @@ fn leaves_turn_from_the_wind_as_sections_do() {
     let gpu = Gpu::headless().expect("a Vulkan adapter");
     let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     picture.draw(&mut meadow(0.0), &Camera::default(), 0.0, 0.0);
-    let tree = GrownTree::new(0, TREE_M);
+    let tree = GrownTree::new(0, TREE_M, 0.0);
     let around = |n: usize| (std::f32::consts::TAU * n as f32 / 12.0).sin_cos();
     let vertices: Vec<[f32; 4]> = (0..12).map(|n| [0.1 * around(n).0, 0.05, 0.1 * around(n).1, 3.0]).collect();
     let on_axis: Vec<[f32; 4]> = vertices.iter().map(|at| [0.0, at[1], 0.0, at[3]]).collect();

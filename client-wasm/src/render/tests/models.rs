@@ -16,7 +16,7 @@ const AT_M: Vec3 = Vec3::new(30.0, 2.0, 30.0);
 const SIZE_M: [f32; 3] = [6.0, 4.0, 4.0];
 
 /// A red box of that size about the origin.
-fn red_box() -> Mesh {
+pub(super) fn red_box() -> Mesh {
     let mut mesh = Mesh::default();
     let half = Vec3::from_array(SIZE_M) * 0.5;
     for axis in 0..3 {

@@ -3,11 +3,11 @@
 mod rays;
 
 use super::*;
-use crate::render::gpu::constants::{SHADE_CELL_M, SHADE_CELLS, SHADE_PX};
+use crate::render::gpu::constants::{SHADE_CELL_M, SHADE_CELLS, SHADE_MAPS, SHADE_PX};
 use half::f16;
 use prairie_core::light::grass::LEAST_SUN_SINE;
 use prairie_core::light::luminance;
-use prairie_core::light::shade::{Column, LEAF_TOP, depth_toward_sun, leaf_area_above, stance};
+use prairie_core::light::shade::{Column, LEAF_TOP, depth_toward_sun, leaf_area_above, stance, sun_on_seen};
 use prairie_core::light::sun::Sun;
 use rays::Strips;
 
@@ -52,7 +52,7 @@ fn light(gpu: &Gpu, picture: &mut OffscreenRenderer, mirror: &mut Mirror, option
 fn light_at_depth(gpu: &Gpu, picture: &mut OffscreenRenderer, mirror: &mut Mirror, sun: Sun, depth: f32) -> Vec<f64> {
     let shade = picture.renderer.scene.as_mut().and_then(|scene| scene.shade_map.as_mut()).expect("shadows of grass");
     let texel = [1.0, depth.sqrt(), depth.sqrt(), depth.sqrt()].map(|v| f16::from_f32(v).to_bits());
-    gpu.queue.write_buffer(&shade.texels, 0, bytemuck::cast_slice(&vec![texel; SHADE_CELLS as usize]));
+    gpu.queue.write_buffer(&shade.texels, 0, bytemuck::cast_slice(&vec![texel; (SHADE_MAPS * SHADE_CELLS) as usize]));
     shade.is_given = true;
     let light = light(gpu, picture, mirror, options(sun, true));
     picture.renderer.scene.as_mut().and_then(|scene| scene.shade_map.as_mut()).expect("shadows of grass").is_given = false;
@@ -105,6 +105,9 @@ fn formulas_of_the_shade_equal_their_cpu_twins() {
     let places: Vec<_> =
         (0..64u32).map(|n| hash3([n, 4, 2]).map(unit)).map(|[a, b, c]| [2.6 * a - 1.3, 2.6 * b - 1.3, 1.5 * c, 0.0]).collect();
     let body = "return vec4<f32>(stance(at.xy, at.z), leaf_area_above(at.z), 0.0);";
+    let depths =
+        [[0.3, 0.5, 4.0], [0.6, 4.0, 0.1], [1.5, 0.0, 3.0], [8.0, 4.0, 9.0], [25.0, 15.0, 1.0]].map(|[eye, x, y]| [eye, x, y, 0.0]);
+    let body_of_seen = "return vec4<f32>(sun_on_seen(at.x, at.yz), height_below(leaf_area_above(0.4)), 0.0);";
     for elevation_rad in [-0.2, 0.3, 1.2] {
         let sun = Sun { heading_rad: 0.7, elevation_rad };
         picture.set_options(options(sun, true));
@@ -114,6 +117,10 @@ fn formulas_of_the_shade_equal_their_cpu_twins() {
             for (found, wanted) in found.iter().zip([height, depth, leaf_area_above(droop)]) {
                 assert!((found - wanted).abs() < 2e-4 * wanted.max(1.0), "{found} instead of {wanted} at {x}, {z}, {droop}");
             }
+        }
+        for (&[eye, x, y, _], found) in depths.iter().zip(probe(&gpu, &picture, body_of_seen, &depths)) {
+            let wanted = [sun_on_seen(eye, x)[0], sun_on_seen(eye, y)[1], 0.4];
+            assert!(wanted.iter().zip(found).all(|(a, b)| (a - b).abs() < 2e-4), "{found:?} instead of {wanted:?} at {eye}, {x}, {y}");
         }
     }
 }
@@ -126,32 +133,39 @@ fn rays_through_the_sward_equal_their_cpu_twins() {
     let mut picture = OffscreenRenderer::new(&gpu, [16, 16], Quality::Low);
     picture.set_options(options(sun, true));
     picture.draw(&mut mirror, &CAMERA, 0.0, 0.0);
-    let corner = [CAMERA.eye_m.x, CAMERA.eye_m.z].map(|m| ((m / SHADE_CELL_M).floor() - 0.5 * SHADE_PX as f32) * SHADE_CELL_M);
-    let place = |cell: [usize; 2]| [0, 1].map(|axis| corner[axis] + (cell[axis] as f32 + 0.5) * SHADE_CELL_M);
-    let side = SHADE_PX as usize;
-    let places: Vec<_> = (0..side * side).map(|n| place([n % side, n / side])).map(|[x, z]| [x, z, 0.0, 0.0]).collect();
-    let body = "let column = column_at(at.xy); return vec4<f32>(column.ground_m, column.height_m, column.depth, frame.shade_top_m);";
-    let columns = probe_in(&gpu, &picture, "land_and_sky/shade_map", body, &places);
+    // Cells on both sides of the track and of the border, and in the coarse map beyond the fine one.
+    rays_equal_their_twins(&gpu, &picture, sun, 0, |n| [68 + n % 30, 74 + n / 6]);
+    rays_equal_their_twins(&gpu, &picture, sun, 1, |n| [46 + n % 15, 80 + n / 4]);
+}
+
+/// Compares the depths of a map with those of rays through its columns, in 60 cells at three heights.
+fn rays_equal_their_twins(gpu: &Gpu, picture: &OffscreenRenderer, sun: Sun, map: usize, cell: impl Fn(usize) -> [usize; 2]) {
+    let (cell_m, side) = (SHADE_CELL_M[map], SHADE_PX as usize);
+    let corner = [CAMERA.eye_m.x, CAMERA.eye_m.z].map(|m| ((m / cell_m).floor() - 0.5 * SHADE_PX as f32) * cell_m);
+    let place = |cell: [usize; 2]| [0, 1].map(|axis| corner[axis] + (cell[axis] as f32 + 0.5) * cell_m);
+    let places: Vec<_> = (0..side * side).map(|n| place([n % side, n / side])).map(|[x, z]| [x, z, map as f32, 0.0]).collect();
+    let body =
+        "let column = column_at(at.xy, u32(at.z)); return vec4<f32>(column.ground_m, column.height_m, column.depth, frame.shade_top_m);";
+    let columns = probe_in(gpu, picture, "land_and_sky/shade_map", body, &places);
     let column = |x: i32, z: i32| {
         let [x, z] = [x, z].map(|n| n.clamp(0, side as i32 - 1) as usize);
         let [ground_m, height_m, depth, _] = columns[z * side + x];
         Column { ground_m, height_m, depth }
     };
-    // Cells on both sides of the track and of the border, at three heights.
-    let cases: Vec<_> = (0..60).map(|n| ([84 + n % 30, 90 + n / 6], 0.5 * (n % 3) as f32 * LEAF_TOP)).collect();
+    let cases: Vec<_> = (0..60).map(|n| (cell(n), 0.5 * (n % 3) as f32 * LEAF_TOP)).collect();
     let body = "return vec4<f32>(mapped_depth(shade_at(at.xy), at.z), 0.0, 0.0, 0.0);";
     let places: Vec<_> = cases.iter().map(|&(cell, height)| (place(cell), height)).map(|([x, z], height)| [x, z, height, 0.0]).collect();
     let [toward_x, _, toward_z] = sun.direction();
     let level = toward_x.hypot(toward_z);
     let mut deepest = 0.0_f32;
-    for ((cell, height), [found, ..]) in cases.into_iter().zip(probe(&gpu, &picture, body, &places)) {
+    for ((cell, height), [found, ..]) in cases.into_iter().zip(probe(gpu, picture, body, &places)) {
         let [x, z] = cell.map(|n| n as f32 + 0.5);
         let own = column(cell[0] as i32, cell[1] as i32);
-        let away = |m: f32| [x + toward_x / level * (m / SHADE_CELL_M), z + toward_z / level * (m / SHADE_CELL_M)].map(|v| v as i32);
+        let away = |m: f32| [x + toward_x / level * (m / cell_m), z + toward_z / level * (m / cell_m)].map(|v| v as i32);
         let toward = |m: f32| column(away(m)[0], away(m)[1]);
         let wanted =
             depth_toward_sun(toward, own.ground_m + height * own.height_m, columns[0][3], sun.elevation_rad.sin().max(LEAST_SUN_SINE));
-        assert!((found - wanted).abs() < 0.01 * wanted.max(1.0), "{found} instead of {wanted} at {cell:?}, {height}");
+        assert!((found - wanted).abs() < 0.01 * wanted.max(1.0), "{found} instead of {wanted} at {cell:?} of map {map}, {height}");
         deepest = deepest.max(wanted);
     }
     assert!(deepest > 2.0, "{deepest} at most");

@@ -1,4 +1,4 @@
-//! Trees: extent while swaying, and reach of their shadows.
+//! Trees: extent while swaying, reach of their shadows, and light of their crowns.
 
 use super::*;
 use crate::render::solids::bounding_sphere::BoundingSphere;
@@ -78,12 +78,18 @@ const DISTANT_LIGHT_STEP: f64 = 0.12;
 
 /// Mean luminance about the middle of a crown, with what is seen between its leaves, from three places beside each other.
 fn light_of_crown(picture: &mut OffscreenRenderer, mirror: &mut Mirror, tree: &PlacedModel, from_foot_m: f32) -> f64 {
+    let [red, green, blue] = rgb_of_crown(picture, mirror, tree, from_foot_m);
+    0.2126 * red + 0.7152 * green + 0.0722 * blue
+}
+
+/// Mean linear colour in the middle of a crown, over three headings.
+fn rgb_of_crown(picture: &mut OffscreenRenderer, mirror: &mut Mirror, tree: &PlacedModel, from_foot_m: f32) -> [f64; 3] {
     let middle_m = tree.position_m + Vec3::Y * 0.6 * tree.size_m;
     let distance_m = (from_foot_m * from_foot_m - (middle_m.y - tree.position_m.y).powi(2)).sqrt();
     let half_px = (0.25 * tree.size_m / distance_m / (0.5 * Camera::default().fov_rad).tan() * 0.5 * APPROACH_PX[1] as f32) as u32;
     let [left, top] = APPROACH_PX.map(|side| side / 2 - half_px);
     let linear = |level: u8| (f64::from(level) / 255.0).powf(2.2);
-    let mut light = 0.0;
+    let mut sums = [0.0; 3];
     for heading_rad in [-0.1, 0.0, 0.1_f32] {
         let eye_m = middle_m + distance_m * Vec3::new(-heading_rad.sin(), 0.0, heading_rad.cos());
         let camera = Camera { eye_m, heading_rad, ..Camera::default() };
@@ -93,43 +99,57 @@ fn light_of_crown(picture: &mut OffscreenRenderer, mirror: &mut Mirror, tree: &P
         }
         let rgba = picture.rgba();
         let pixels = (top..top + 2 * half_px).flat_map(|y| (left..left + 2 * half_px).map(move |x| 4 * (y * APPROACH_PX[0] + x) as usize));
-        light += pixels.map(|at| 0.2126 * linear(rgba[at]) + 0.7152 * linear(rgba[at + 1]) + 0.0722 * linear(rgba[at + 2])).sum::<f64>();
+        for at in pixels {
+            sums = std::array::from_fn(|channel| sums[channel] + linear(rgba[at + channel]));
+        }
     }
-    light / f64::from(12 * half_px * half_px)
+    sums.map(|sum| sum / f64::from(12 * half_px * half_px))
 }
 
 const APPROACH_PX: [u32; 2] = [400, 360];
 
-/// Approaches a tree past each of its levels of detail, with the sun before and behind the camera.
-#[test]
-fn a_tree_keeps_its_light_where_it_becomes_finer() {
-    let gpu = Gpu::headless().expect("a Vulkan adapter");
+/// A wide meadow with one tree, under snow of that depth (m).
+fn lone_tree(snow_m: f32) -> (Mirror, PlacedModel) {
     let wide = |scene: &mut Scene| {
         (scene.patches.count, scene.terrain.pixel_m) = ([16, 16], [16.0; 2]);
-        scene.wind.mean_m_per_s = [0.0; 2];
+        (scene.wind.mean_m_per_s, scene.snow.depth_m) = ([0.0; 2], snow_m);
         // Only the tree matters, and a meadow takes most of the time.
         scene.plants.plants_per_side = 2;
     };
     let mut covering = [255; 16 * 16];
     covering[8 + 16 * 5] = 253;
-    let mut mirror = meadow_of(wide, &covering);
+    let mirror = meadow_of(wide, &covering);
     let tree = placed_models(mirror.decoded_scene().expect("a scene"))[0];
-    let under_sun = |quality, heading_rad, elevation_rad| {
-        let mut picture = OffscreenRenderer::new(&gpu, APPROACH_PX, quality);
-        picture.set_options(RenderOptions { sun: Some(Sun { heading_rad, elevation_rad }), ..RenderOptions::default() });
-        picture
-    };
+    (mirror, tree)
+}
+
+fn under_sun(gpu: &Gpu, quality: Quality, heading_rad: f32, elevation_rad: f32) -> OffscreenRenderer {
+    let mut picture = OffscreenRenderer::new(gpu, APPROACH_PX, quality);
+    picture.set_options(RenderOptions { sun: Some(Sun { heading_rad, elevation_rad }), ..RenderOptions::default() });
+    picture
+}
+
+/// Light of the crown just before and after the tree takes more than that height (pixels).
+fn light_around(picture: &mut OffscreenRenderer, mirror: &mut Mirror, tree: &PlacedModel, quality: Quality, tall_px: f32) -> [f64; 2] {
+    let finer_m = tree.size_m * APPROACH_PX[1] as f32 / (tall_px * Camera::default().fov_rad * quality.detail().coarser);
+    [1.01, 0.99].map(|part| light_of_crown(picture, mirror, tree, part * finer_m))
+}
+
+/// Approaches a tree past each of its levels of detail, with the sun before and behind the camera.
+#[test]
+fn a_tree_keeps_its_light_where_it_becomes_finer() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    let (mut mirror, tree) = lone_tree(0.0);
     // Control: the measure tells a sun 0.2 rad lower.
     let [light, lower] = [0.6, 0.4]
-        .map(|elevation_rad| light_of_crown(&mut under_sun(Quality::Low, PI, elevation_rad), &mut mirror, &tree, 3.0 * tree.size_m));
+        .map(|elevation_rad| light_of_crown(&mut under_sun(&gpu, Quality::Low, PI, elevation_rad), &mut mirror, &tree, 3.0 * tree.size_m));
     assert!((lower / light - 1.0).abs() > LIGHT_STEP, "a lower sun: {light} and {lower}");
     let mut failures = Vec::new();
     for quality in [Quality::Low, Quality::Medium, Quality::High] {
         for heading_rad in [PI, 0.0] {
-            let mut picture = under_sun(quality, heading_rad, 0.6);
+            let mut picture = under_sun(&gpu, quality, heading_rad, 0.6);
             for (tall_px, bound) in [(DISTANT_TREE_PX, DISTANT_LIGHT_STEP), (FINE_TREE_PX, LIGHT_STEP)] {
-                let finer_m = tree.size_m * APPROACH_PX[1] as f32 / (tall_px * Camera::default().fov_rad * quality.detail().coarser);
-                let [before, after] = [1.01, 0.99].map(|part| light_of_crown(&mut picture, &mut mirror, &tree, part * finer_m));
+                let [before, after] = light_around(&mut picture, &mut mirror, &tree, quality, tall_px);
                 let change = after / before - 1.0;
                 println!("{quality:?}, sun at {heading_rad:.1}, {tall_px} px: {:.1} %; {before:.3} {after:.3}", 100.0 * change);
                 if change.abs() > bound {
@@ -139,4 +159,25 @@ fn a_tree_keeps_its_light_where_it_becomes_finer() {
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn a_crown_under_snow_is_white_and_keeps_its_light_where_it_becomes_finer() {
+    let gpu = Gpu::headless().expect("a Vulkan adapter");
+    // Blue beside green: 1 in white.
+    let blue_of = |picture: &mut OffscreenRenderer, mirror: &mut Mirror, tree: &PlacedModel| {
+        let [_, green, blue] = rgb_of_crown(picture, mirror, tree, 3.0 * tree.size_m);
+        blue / green
+    };
+    let [bare, white] = [0.0, 0.2].map(|snow_m| {
+        let (mut mirror, tree) = lone_tree(snow_m);
+        blue_of(&mut under_sun(&gpu, Quality::Low, PI, 0.6), &mut mirror, &tree)
+    });
+    assert!(1.0 - white < 0.5 * (1.0 - bare), "blue beside green: {bare} bare, {white} under snow");
+
+    let (mut mirror, tree) = lone_tree(0.2);
+    let mut picture = under_sun(&gpu, Quality::Medium, PI, 0.6);
+    let [afar, near] = light_around(&mut picture, &mut mirror, &tree, Quality::Medium, DISTANT_TREE_PX);
+    println!("blue beside green: {bare} bare, {white} under snow; light of the crown {afar}, then {near}");
+    assert!((near / afar - 1.0).abs() < DISTANT_LIGHT_STEP, "{afar}, then {near}");
 }

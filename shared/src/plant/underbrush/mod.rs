@@ -5,7 +5,7 @@
 //! - [`posture`]: tables of bent shapes by direction and size of the load.
 //! - [`plan`]: the tables of a species, and the components of each of its plants.
 //! - [`constraint`]: delayed response to the force field; [`drops`]: response to single raindrops.
-//! - [`plant`]: shape of a plant under given forces; [`vectors`]: its outline, from which it is drawn.
+//! - [`plant`]: shape of a plant under given forces; [`vectors`]: its outline, from which it is drawn, and [`spline`]: its curve close up.
 
 pub mod bearing;
 pub mod constraint;
@@ -16,5 +16,6 @@ pub mod plant;
 pub mod posture;
 pub mod rest;
 pub mod section;
+pub mod spline;
 pub mod strength;
 pub mod vectors;

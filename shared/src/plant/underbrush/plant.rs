@@ -70,7 +70,7 @@ impl Posed {
     }
 
     /// Position at a fraction of its length, and the section that contains it.
-    fn at(&self, fraction: f32) -> (Vec3, Section) {
+    pub(in crate::plant) fn at(&self, fraction: f32) -> (Vec3, Section) {
         let along = fraction.clamp(0.0, 1.0) * self.count as f32;
         let index = (along as usize).min(self.count - 1);
         let start_m = if index == 0 { self.foot_m } else { self.sections[index - 1].end_m };
@@ -87,27 +87,40 @@ pub fn posed(plan: &Plan, placed: &[Placed], stand: Stand, forces: Forces, look_
     let ground = ground_frame(stand);
     let mut posed: Vec<Posed> = Vec::with_capacity(placed.len());
     for (index, one) in placed.iter().enumerate() {
-        let planned = &plan.components[one.planned];
-        let (foot_m, frame) = one.on.map_or((Vec3::ZERO, ground), |on| posed[on].at(one.at_fraction));
-        let unbent = unbent(foot_m, frame, one);
-        let load = forces.per_mass_m_per_s2 * (planned.weight_s2_per_m * one.size * stand.size) + forces.pressure_pa * planned.drag_per_pa;
-        let is_broken = broken >> index & 1 == 1;
-        let table = &plan.tables[planned.broken.filter(|_| is_broken).unwrap_or(planned.whole)];
-        let (towards, node) = posture(table, &unbent, load, look_up);
-        let (sections, count) = bent(&unbent, towards, one.size * stand.size * planned.component.length_m, &node[..table.stride() - 1]);
-        let moment = load.length() * node[table.stride() - 1];
-        posed.push(Posed {
-            planned: one.planned,
-            size: one.size * stand.size,
-            foot_m,
-            axis: unbent.axis,
-            towards,
-            strain: if planned.strength > 0.0 { moment / planned.strength } else { 0.0 },
-            count,
-            sections,
-        });
+        let foot = one.on.map_or((Vec3::ZERO, ground), |on| posed[on].at(one.at_fraction));
+        posed.push(posed_on(foot, plan, one, stand.size, forces, look_up, broken >> index & 1 == 1));
     }
     posed
+}
+
+/// Poses a component whose foot is at a position (m) on a section of its carrier, in a plant of that size.
+pub(in crate::plant) fn posed_on(
+    (foot_m, frame): (Vec3, Section),
+    plan: &Plan,
+    one: &Placed,
+    size: f32,
+    forces: Forces,
+    look_up: LookUp,
+    is_broken: bool,
+) -> Posed {
+    let planned = &plan.components[one.planned];
+    let unbent = unbent(foot_m, frame, one);
+    let size = one.size * size;
+    let load = forces.per_mass_m_per_s2 * (planned.weight_s2_per_m * size) + forces.pressure_pa * planned.drag_per_pa;
+    let table = &plan.tables[planned.broken.filter(|_| is_broken).unwrap_or(planned.whole)];
+    let (towards, node) = posture(table, &unbent, load, look_up);
+    let (sections, count) = bent(&unbent, towards, size * planned.component.length_m, &node[..table.stride() - 1]);
+    let moment = load.length() * node[table.stride() - 1];
+    Posed {
+        planned: one.planned,
+        size,
+        foot_m,
+        axis: unbent.axis,
+        towards,
+        strain: if planned.strength > 0.0 { moment / planned.strength } else { 0.0 },
+        count,
+        sections,
+    }
 }
 
 /// Frame at the plant's root: the vertical, tilted by the lean of the grass, and the side at which rotations start.

@@ -1,5 +1,6 @@
 //! Checks of fields against each other; the range of each single field is in [`FIELDS`](super::FIELDS).
 
+mod accuracy;
 mod bend;
 mod blade_step;
 pub(super) mod conflict;
@@ -35,5 +36,6 @@ pub(super) fn cross_checks(scene: &Scene, from_file: usize) -> Conflicts {
     race::check(scene, &mut conflicts);
     lights::check_light(&scene.light, &mut conflicts);
     lights::check_lamps(&scene.lights, &mut conflicts);
+    accuracy::check(&scene.accuracy, &mut conflicts);
     conflicts
 }

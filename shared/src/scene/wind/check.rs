@@ -39,8 +39,24 @@ pub(in crate::scene) fn check(scene: &Scene, conflicts: &mut Conflicts) {
     primitives(scene, conflicts);
 }
 
+/// Largest number of cells below all gusts together, and of cell steps of the warm-up.
+const GUST_CELLS_LIMIT: f64 = 4_194_304.0;
+const WARM_UP_LIMIT: f64 = 67_108_864.0;
+
 fn numbers(wind: &Wind, conflicts: &mut Conflicts) {
-    let cells = wind.cells.map(u64::from).iter().product();
+    let cells: u64 = wind.cells.map(u64::from).iter().product();
+    let radii_m = wind.gust_radius_m();
+    let below = |axis: usize| f64::from(2.0 * radii_m[axis] / wind.spacing_m[axis] + 1.0).min(wind.cells[axis].into());
+    let gust_cells = f64::from(wind.sources) * below(0) * below(1) * below(2);
+    if gust_cells > GUST_CELLS_LIMIT {
+        let message = format!("with {} sources covers {gust_cells:.0} cells in all; allowed: {GUST_CELLS_LIMIT}", wind.sources);
+        conflicts.note(&["wind.source_radius_m", "wind.sources"], message);
+    }
+    let warm_up = cells as f64 * f64::from(wind.warm_up_secs / wind.step_secs);
+    if warm_up > WARM_UP_LIMIT {
+        let message = format!("takes {warm_up:.0} steps of a cell; allowed: {WARM_UP_LIMIT}");
+        conflicts.note(&["wind.warm_up_secs", "wind.step_secs", "wind.cells"], message);
+    }
     if cells > WIND_CELLS_LIMIT {
         conflicts.note(&["wind.cells"], format!("has {cells} cells in all; allowed: {WIND_CELLS_LIMIT}"));
     }

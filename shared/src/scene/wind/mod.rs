@@ -32,9 +32,11 @@ pub struct Wind {
     /// absolute height flows round it, which needs `explicit` or `gauss-seidel` diffusion and `tiling = "box"`: with the `direct` pressure solver the land is a wall
     /// immersed at its slope, with an iterative one it is solid cells. Default `follow`.
     pub terrain: WindTerrain,
-    /// Prevailing wind along X and Z at a height of five cells (m/s). Default (4, 2.5), allowed
+    /// Prevailing wind along X and Z at the height `reference_height_m` (m/s). Default (4, 2.5), allowed
     /// −40..=40 each and a length of at most 40; 0 across closed faces.
     pub mean_m_per_s: [f32; 2],
+    /// Height at which the prevailing wind blows (m); below it is weaker, by a logarithmic profile. Default 0, five cells; allowed 0..=1000.
+    pub reference_height_m: f32,
     /// Rate at which the mean flow relaxes to the prevailing wind (1/s). Default 0.2, allowed 0..=10.
     pub mean_rate_per_s: f32,
     /// Kinematic (eddy) viscosity ν (m²/s). Default 0.2, allowed 0..=100.
@@ -60,9 +62,18 @@ pub struct Wind {
     pub sources: u32,
     /// Speed that the strongest gust gives the air over its life (m/s). Default 14, allowed 0..=40.
     pub source_m_per_s: f32,
+    /// Half-widths of a gust along X, Y and Z (m), of which those below the size of a cell count as that. Default (0, 0, 0), 1.75 × 2.5 × 1.75 cells; allowed
+    /// 0..=1000 each.
+    pub source_radius_m: [f32; 3],
     /// Strength of the gusts that the cells do not resolve, relative to a neutral surface layer (`wind/turbulence.rs`); 0 turns them off.
     /// Default 1, allowed 0..=3.
     pub turbulence: f32,
+    /// Longest wavelength of the gusts that the cells do not resolve (m). Default 0, seven of the larger sides of a cell; allowed 0..=10000.
+    pub turbulence_below_m: f32,
+    /// Least duration of a step of the solver (s): a step is the smallest whole number of ticks that takes at least this long. Default 0.05, allowed 0.004..=0.5.
+    pub step_secs: f32,
+    /// Time for which the wind blows before the world starts (s). Default 0, 120 steps of the solver, or fewer of a box of more than 8738 cells; allowed 0..=60.
+    pub warm_up_secs: f32,
     /// The solver: `staggered`, or `stable-fluids`, the collocated method of Zhang, for comparison. Default `staggered`.
     pub method: WindMethod,
     /// Advection scheme of the wind. Default `conservative`; only `semi-lagrangian` with `stable-fluids`.
@@ -98,6 +109,7 @@ impl Default for Wind {
             tiling: WindTiling::Box,
             terrain: WindTerrain::Follow,
             mean_m_per_s: [4.0, 2.5],
+            reference_height_m: 0.0,
             mean_rate_per_s: 0.2,
             viscosity_m2_per_s: 0.2,
             canopy_drag_per_m: 0.1,
@@ -108,7 +120,11 @@ impl Default for Wind {
             body_force_m_per_s2: [0.0; 2],
             sources: 24,
             source_m_per_s: 14.0,
+            source_radius_m: [0.0; 3],
             turbulence: 1.0,
+            turbulence_below_m: 0.0,
+            step_secs: 0.05,
+            warm_up_secs: 0.0,
             method: WindMethod::Staggered,
             advection: WindAdvection::Conservative,
             time: WindTime::RungeKutta3,
@@ -141,6 +157,20 @@ impl Wind {
                 ..Self::default()
             },
         }
+    }
+
+    /// Height (m) at which the prevailing wind blows: `reference_height_m`, or five cells.
+    pub fn reference_m(&self) -> f32 {
+        if self.reference_height_m > 0.0 { self.reference_height_m } else { 5.0 * self.spacing_m[1] }
+    }
+
+    /// Half-widths (m) of a gust: `source_radius_m`, or multiples of the cells.
+    pub fn gust_radius_m(&self) -> [f32; 3] {
+        let of_cells = [1.75, 2.5, 1.75];
+        std::array::from_fn(|axis| match self.source_radius_m[axis] {
+            radius_m if radius_m > 0.0 => radius_m,
+            _ => of_cells[axis] * self.spacing_m[axis],
+        })
     }
 
     /// Extent of the box along X, Y and Z (m).

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use anyhow::{Context as _, Result, ensure};
+use prairie::charts::views::{VIEWS, View};
+use prairie_charts::machine::machine;
 use prairie_client::render::{Gpu, Quality};
-use tests::chart::machine::machine;
 use tests::chart::plates::{self, PLATES, Plate};
 use tests::chart::{gallery, pictures};
-use tests::views::{VIEWS, View};
 
 use super::progress;
 

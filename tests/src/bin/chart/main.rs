@@ -1,4 +1,4 @@
-//! Measures methods (wall time against error), writes charts and a summary, and updates the tables of the documents.
+//! Compares and draws for the documents, and updates their tables.
 
 mod drawings;
 mod help;
@@ -8,34 +8,25 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, Result, ensure};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
+use prairie::charts::picture::{self, METHODS, Method, ViewShots};
+use prairie::charts::still::Still;
+use prairie::charts::views::{VIEWS, View};
+use prairie_charts::machine::machine;
+use prairie_charts::tables::with_tables;
 use prairie_client::render::{Gpu, Quality};
 use tests::arguments::quality;
-use tests::chart::figure::Figure;
-use tests::chart::files::write_all;
 use tests::chart::gallery::reference_path;
-use tests::chart::machine::machine;
 use tests::chart::peers::{self, Peer};
-use tests::chart::picture::{self, METHODS, Method, ViewShots};
 use tests::chart::plates::Plate;
-use tests::chart::row::cells_text;
-use tests::chart::run::{Repeats, measure};
-use tests::chart::summary::summary;
-use tests::chart::tables::with_tables;
 use tests::chart::versions::{PAGE_VIEWS, PageView};
-use tests::chart::{Problem, bend, gpu, heights, plants, shells, start, stream, versions, wind, zhang};
-use tests::still::Still;
-use tests::views::{VIEWS, View};
+use tests::chart::{features, gpu, heights, need, start, versions, zhang};
 
 use drawings::{draw_gallery, draw_pictures, draw_plates};
-use help::{
-    BEND_FILES, EXAMPLES, FILES, GPU_FILES, PEERS_FILES, PICTURE_FILES, PLANTS_FILES, PLATES_FILES, SHELLS_FILES, START_FILES,
-    STREAM_FILES, VERSIONS_FILES,
-};
+use help::{EXAMPLES, GPU_FILES, PEERS_FILES, PICTURE_FILES, PLATES_FILES, START_FILES, VERSIONS_FILES};
 
-/// Measures methods on problems with known solutions: wall time against error.
+/// Comparisons and pictures for the documents: the picture and what parts of a scene cost, other programs, figures of the literature.
 ///
-/// Every method solves every problem on grids from coarse to fine. Each run is repeated and its shortest time kept, in seconds of wall time per simulated second.
-/// A summary names the fastest method for each error. Times are meaningful only on an idle machine.
+/// Methods on problems with known solutions are measured by `prairie chart`. Times are meaningful only on an idle machine.
 #[derive(Parser)]
 #[command(after_help = EXAMPLES)]
 struct Arguments {
@@ -45,21 +36,6 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Model {
-    /// Wind solvers on flows with exact solutions
-    #[command(after_help = FILES)]
-    Wind {
-        #[command(flatten)]
-        options: Options,
-        /// Instead of charts: measure orders and limits, and replace their tables in this document
-        #[arg(long, value_name = "FILE", conflicts_with_all = ["out", "quick", "only"])]
-        tables: Option<PathBuf>,
-    },
-    /// Bend field schemes: error against time, cost against cars, stability, error of the loose overlap
-    #[command(after_help = BEND_FILES)]
-    Bend(Options),
-    /// Blades and underbrush: integrators, sections, posture tables, the dynamic constraint, stability limits
-    #[command(after_help = PLANTS_FILES)]
-    Plants(Options),
     /// Render options: frame time against visible error, on ten views
     #[command(after_help = PICTURE_FILES)]
     Picture {
@@ -71,6 +47,15 @@ enum Model {
         /// Only these views, separated by commas
         #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = View::find)]
         views: Vec<&'static View>,
+    },
+    /// What parts of a scene cost: vehicles, snow, snowfall, trees of components; on the server, on the wire and in a frame
+    Features {
+        /// Output folder
+        #[arg(long, value_name = "DIR", default_value = "tests/results")]
+        out: PathBuf,
+        /// Small pictures and few steps, for a quick look
+        #[arg(long)]
+        quick: bool,
     },
     /// The gallery: a page of the ten views with frame times, similarity to a reference, and figures in the literature
     Gallery {
@@ -122,6 +107,15 @@ enum Model {
         #[arg(long)]
         quick: bool,
     },
+    /// Cost against need: processor time of the server, line and frame, from empty land to a storm
+    Need {
+        /// Output folder
+        #[arg(long, value_name = "DIR", default_value = "tests/results")]
+        out: PathBuf,
+        /// Small pictures and short runs, for a quick look
+        #[arg(long)]
+        quick: bool,
+    },
     /// Frame rates of other programs that draw grass, and of ours, in a browser with software WebGPU
     #[command(after_help = PEERS_FILES)]
     Peers {
@@ -170,12 +164,12 @@ enum Model {
         #[arg(long, value_name = "DIR", default_value = "tests/results/versions")]
         out: PathBuf,
     },
-    /// Shells: frames per second against the number of layers and of point lights, beside Bakay 2003, table 4.1 and section 4.1
-    #[command(after_help = SHELLS_FILES)]
-    Shells(Options),
-    /// Stream: bits per cell against error, by causes, in a closed loop, by the codec of patches, and by general compressors
-    #[command(after_help = STREAM_FILES)]
-    Stream(Options),
+    /// Orders and limits of the wind: measured again, and their tables in a document replaced
+    Tables {
+        /// The document
+        #[arg(long, value_name = "FILE", default_value = "tests/README.md")]
+        of: PathBuf,
+    },
     /// Zhang's prairie on this machine, beside the platform of the thesis (Table 3)
     Zhang {
         /// Output folder
@@ -205,22 +199,19 @@ struct Options {
 
 fn main() -> Result<()> {
     match Arguments::parse().model {
-        Model::Wind { tables: Some(document), .. } => write_tables(&document),
-        Model::Wind { options, .. } => charts("wind", wind::problems(options.quick), &wind::FIGURES, &options),
-        Model::Bend(options) => charts("bend", bend::problems(options.quick), &bend::FIGURES, &options),
-        Model::Plants(options) => charts("plants", plants::problems(options.quick), &plants::FIGURES, &options),
         Model::Picture { options, size, views } => chart_picture(&options, size, &chosen(views)),
+        Model::Features { out, quick } => report_features(&out, quick),
         Model::Gallery { out, cache, size, quality, views } => draw_gallery(&out, &cache, size, quality, &chosen(views)),
         Model::Heights { out, size, quality } => heights::series(&Gpu::headless()?, size, quality)?.save(&out),
         Model::Plates { out, only } => draw_plates(&out, &only),
         Model::Gpu { out, quick } => report_gpu(&out, quick),
+        Model::Need { out, quick } => report_need(&out, quick),
         Model::Peers { peers, seconds, out } => compare_peers(&peers, seconds, &out),
         Model::Start { pages, out } => time_starts(pages, &out),
         Model::Versions { before, after, views, out } => compare_versions(&before, &after, views, &out),
         Model::Pictures { of, only } => draw_pictures(&of, only.as_deref()),
-        Model::Shells(options) => charts("shells", Vec::new(), &shells::FIGURES, &options),
         Model::Zhang { out, quick } => write_report(&zhang::report(quick)?, &out, "zhang.md"),
-        Model::Stream(options) => charts("stream", Vec::new(), &stream::FIGURES, &options),
+        Model::Tables { of } => write_tables(&of),
     }
 }
 
@@ -245,32 +236,29 @@ fn progress(steps: usize) -> ProgressBar {
 fn chart_picture(options: &Options, size: Option<[u32; 2]>, views: &[&View]) -> Result<()> {
     let is_asked = |name: &str| options.only.as_ref().is_none_or(|word| name.to_lowercase().contains(&word.to_lowercase()));
     let methods: Vec<Method> = METHODS.into_iter().filter(|method| is_asked(&method.name())).collect();
-    let figures: Vec<&Figure> = picture::FIGURES.iter().filter(|figure| is_asked(figure.name)).collect();
-    ensure!(!methods.is_empty() || !figures.is_empty(), "--only: no method and no figure has this in its name");
-    if !methods.is_empty() {
-        let qualities = if options.quick { vec![Quality::Low, Quality::Medium] } else { Quality::ALL.to_vec() };
-        let size_px = size.unwrap_or(if options.quick { [320, 180] } else { [960, 540] });
-        let wanted = ViewShots { methods, qualities, frames: if options.quick { 1 } else { 5 } };
-        let gpu = Gpu::headless()?;
-        let about = format!("{} × {} px; {}; {}", size_px[0], size_px[1], gpu.adapter_name, machine());
-        let bar = progress(views.len() * (1 + wanted.methods.len() * wanted.qualities.len()));
-        let (mut shots, mut files) = (Vec::new(), Vec::new());
-        for view in views {
-            bar.set_message(format!("{}, reference", view.name));
-            let mut still = Still::of(view, size_px)?;
-            let reference = still.kept_reference(&gpu, &reference_path(&options.out.join("cache"), view, size_px))?;
+    ensure!(!methods.is_empty(), "--only: no method has this in its name");
+    let qualities = if options.quick { vec![Quality::Low, Quality::Medium] } else { Quality::ALL.to_vec() };
+    let size_px = size.unwrap_or(if options.quick { [320, 180] } else { [960, 540] });
+    let wanted = ViewShots { methods, qualities, frames: if options.quick { 1 } else { 5 } };
+    let gpu = Gpu::headless()?;
+    let about = format!("{} × {} px; {}; {}", size_px[0], size_px[1], gpu.adapter_name, machine());
+    let bar = progress(views.len() * (1 + wanted.methods.len() * wanted.qualities.len()));
+    let (mut shots, mut files) = (Vec::new(), Vec::new());
+    for view in views {
+        bar.set_message(format!("{}, reference", view.name));
+        let mut still = Still::of(view, size_px)?;
+        let reference = still.kept_reference(&gpu, &reference_path(&options.out.join("cache"), view, size_px))?;
+        bar.inc(1);
+        shots.extend(picture::shots(&gpu, view.name, &mut still, &reference, &wanted, |name| {
+            bar.set_message(name.to_owned());
             bar.inc(1);
-            shots.extend(picture::shots(&gpu, view.name, &mut still, &reference, &wanted, |name| {
-                bar.set_message(name.to_owned());
-                bar.inc(1);
-            })?);
-            files = picture::write_all(&shots, &about, &options.out)?;
-        }
-        bar.finish_and_clear();
-        println!("picture: means over {} views\n{about}\n\n{}", views.len(), picture::summary(&shots));
-        println!("{} files in {}", files.len(), options.out.display());
+        })?);
+        files = picture::write_all(&shots, &about, &options.out)?;
     }
-    draw_figures("picture", &figures, options)
+    bar.finish_and_clear();
+    println!("picture: means over {} views\n{about}\n\n{}", views.len(), picture::summary(&shots));
+    println!("{} files in {}", files.len(), options.out.display());
+    Ok(())
 }
 
 /// A line that says what is being done, and since when.
@@ -279,6 +267,20 @@ fn spinner() -> ProgressBar {
     let bar = ProgressBar::new_spinner().with_style(style);
     bar.enable_steady_tick(std::time::Duration::from_millis(200));
     bar
+}
+
+fn report_features(out: &Path, quick: bool) -> Result<()> {
+    let bar = spinner();
+    let report = features::report(quick, |name| bar.set_message(name.to_owned()))?;
+    bar.finish_and_clear();
+    write_report(&report, out, "features.md")
+}
+
+fn report_need(out: &Path, quick: bool) -> Result<()> {
+    let bar = spinner();
+    let report = need::report(quick, |name| bar.set_message(name.to_owned()))?;
+    bar.finish_and_clear();
+    write_report(&report, out, "need.md")
 }
 
 fn report_gpu(out: &Path, quick: bool) -> Result<()> {
@@ -323,68 +325,8 @@ fn write_report(report: &str, out: &Path, name: &str) -> Result<()> {
     std::fs::write(&path, report).with_context(|| format!("{} cannot be written", path.display()))
 }
 
-/// Error against time as for the wind, then the other figures of the model.
-fn charts(model: &str, problems: Vec<Problem>, figures: &[Figure], options: &Options) -> Result<()> {
-    let is_asked = |name: &str| options.only.as_ref().is_none_or(|word| name.to_lowercase().contains(&word.to_lowercase()));
-    let figures: Vec<_> = figures.iter().filter(|figure| is_asked(figure.name)).collect();
-    let has_problem = problems.iter().any(|problem| is_asked(problem.name) || problem.runs.iter().any(|run| is_asked(&run.method)));
-    if has_problem || figures.is_empty() {
-        chart(model, problems, options)?;
-    }
-    draw_figures(model, &figures, options)
-}
-
-fn draw_figures(model: &str, figures: &[&Figure], options: &Options) -> Result<()> {
-    std::fs::create_dir_all(&options.out).with_context(|| format!("{} cannot be made", options.out.display()))?;
-    for figure in figures {
-        println!("\n{}", figure.title);
-        let drawn = (figure.draw)(options.quick, &machine())?;
-        println!("{}", drawn.summary);
-        for (ending, text) in [("svg", Some(drawn.svg)), ("csv", Some(drawn.csv)), ("md", drawn.tables)] {
-            let Some(text) = text else { continue };
-            let path = options.out.join(format!("{model}-{}.{ending}", figure.name));
-            std::fs::write(&path, text).with_context(|| format!("{} cannot be written", path.display()))?;
-        }
-    }
-    Ok(())
-}
-
 fn write_tables(document: &Path) -> Result<()> {
     let text = std::fs::read_to_string(document).with_context(|| format!("{} cannot be read", document.display()))?;
     let text = with_tables(&text).with_context(|| document.display().to_string())?;
     std::fs::write(document, text).with_context(|| format!("{} cannot be written", document.display()))
-}
-
-/// Measures, and writes the files after each problem, so that an interrupted run keeps its results.
-fn chart(model: &str, mut problems: Vec<Problem>, options: &Options) -> Result<()> {
-    if let Some(word) = &options.only {
-        let has = |name: &str| name.to_lowercase().contains(&word.to_lowercase());
-        problems.iter_mut().filter(|problem| !has(problem.name)).for_each(|problem| problem.runs.retain(|run| has(&run.method)));
-        problems.retain(|problem| !problem.runs.is_empty());
-        ensure!(!problems.is_empty(), "--only {word}: no problem or method has this in its name");
-    }
-    let (machine, repeats) = (machine(), if options.quick { Repeats::QUICK } else { Repeats::THOROUGH });
-    let bar = progress(problems.iter().map(|problem| problem.runs.len()).sum());
-    let (mut rows, mut failures, mut files) = (Vec::new(), Vec::new(), Vec::new());
-    for problem in &problems {
-        for run in &problem.runs {
-            let name = format!("{}, {}, {}", problem.name, run.method, cells_text(run.cells));
-            bar.set_message(name.clone());
-            match measure(model, problem.name, run, repeats) {
-                Ok(measured) => rows.extend(measured),
-                Err(error) => failures.push(format!("{name}: {error:#}")),
-            }
-            bar.inc(1);
-        }
-        files = write_all(model, &problems, &rows, &machine, &options.out)?;
-    }
-    bar.finish_and_clear();
-    println!("{model}: the fastest method for an error\n{machine}\n");
-    println!("{}", summary(&problems, &rows, "l2"));
-    println!(
-        "Wall time is per simulated second, or of a single projection. 'Next best' is the best of another family, and how much longer it takes."
-    );
-    failures.iter().for_each(|failure| println!("failed: {failure}"));
-    println!("{} files in {}", files.len(), options.out.display());
-    Ok(())
 }

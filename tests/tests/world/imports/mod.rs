@@ -13,8 +13,8 @@ use circles::{Graph, circles};
 use modules::Modules;
 
 /// Source folders of the packages.
-pub(super) const PACKAGES: [&str; 6] =
-    ["shared/src", "shared/vehicles/src", "server/src", "server/wind/src", "client-wasm/src", "tests/src"];
+pub(super) const PACKAGES: [&str; 7] =
+    ["shared/src", "shared/vehicles/src", "server/src", "server/charts/src", "server/wind/src", "client-wasm/src", "tests/src"];
 
 /// Roots of the crates of a package: its library, and its binary if it has one.
 const ROOTS: [&str; 2] = ["lib.rs", "main.rs"];

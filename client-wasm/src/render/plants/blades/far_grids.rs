@@ -2,16 +2,19 @@
 //! with their number (Zhang, section 5.3).
 
 use super::layout::{BATCH_LIMIT, CHUNK, density};
-use super::lowest_land::LowestLand;
 use crate::render::gpu::constants::TUFT_REACH_M;
 use crate::render::gpu::device::Gpu;
-use crate::render::gpu::pipeline::{PassFactory, bind, sampled, storage_rw, uniform};
+use crate::render::gpu::pipeline::{PassFactory, bind_at, sampled, storage_rw, uniform};
 use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::Squares;
+use crate::render::gpu::variants::OcclusionVariants;
+use crate::render::inputs::depth_pyramid::{PYRAMID_BINDING, pyramid_layout};
 use crate::render::inputs::frustum::Frustum;
+use crate::render::inputs::lowest_land::LowestLand;
 use crate::render::inputs::viewpoint::Viewpoint;
 use crate::render::land_and_sky::terrain_quadtree::hills_m;
 use crate::render::options::detail::Detail;
+use crate::render::options::quality::Quality;
 use crate::state::DecodedScene;
 use glam::Vec3;
 use std::ops::Range;
@@ -21,7 +24,7 @@ use wgpu::{BindingResource, BufferUsages, TextureSampleType, TextureViewDimensio
 const NEAR_GRIDS: i32 = 1;
 
 pub(super) struct FarGrids {
-    list: wgpu::ComputePipeline,
+    list: OcclusionVariants<wgpu::ComputePipeline>,
     group: wgpu::BindGroup,
     squares: wgpu::Buffer,
     chunks: wgpu::Buffer,
@@ -40,8 +43,9 @@ pub(super) struct FarGrids {
 
 impl FarGrids {
     /// Pass for `places` plants per grid, listed at once or in batches.
-    pub(super) fn new(factory: &PassFactory, decoded: &DecodedScene, detail: &Detail, places: u32, by_batches: bool) -> Self {
+    pub(super) fn new(factory: &PassFactory, decoded: &DecodedScene, quality: Quality, places: u32, by_batches: bool) -> Self {
         let gpu = &factory.gpu;
+        let detail = &quality.detail().on(&decoded.scene().plants);
         let grid_m = decoded.scene().plants.grid_m;
         let side = side(detail, grid_m);
         let grids_per_batch = if by_batches { (BATCH_LIMIT / places.max(1)).max(1) } else { side * side };
@@ -54,6 +58,7 @@ impl FarGrids {
                 storage_rw(2),
                 sampled(3, TextureSampleType::Float { filterable: false }, TextureViewDimension::D2),
                 storage_rw(4),
+                pyramid_layout(),
             ],
         );
         let squares = gpu.empty_buffer("squares", size_of::<Squares>() as u64, BufferUsages::UNIFORM | BufferUsages::COPY_DST);
@@ -65,16 +70,22 @@ impl FarGrids {
         let lowest_cell_m = lowest.cell_m;
         let lowest = lowest.texture(gpu);
         let [own, listed, counted, found] = [&squares, &chunks, &workgroups, &states].map(|buffer| buffer.as_entire_binding());
-        let group = bind(gpu, "grids", &layout, &[own, listed, counted, BindingResource::TextureView(&lowest), found]);
-        let list = factory.compute("list_grids", &factory.shader("grids", shaders::GRIDS, &[]), "list_grids", &layout);
+        let resources = (0..).zip([own, listed, counted, BindingResource::TextureView(&lowest), found]);
+        let group = bind_at(gpu, "grids", &layout, resources.chain([(PYRAMID_BINDING, factory.pyramid.as_entire_binding())]));
+        let list = list_pipelines(factory.clone(), layout);
         let beyond_m = beyond_m(decoded);
-        let frame = Squares { lowest_cell_m, ..bytemuck::Zeroable::zeroed() };
+        let frame = Squares { lowest_cell_m, thinnest_px: quality.min_blade_px(), ..bytemuck::Zeroable::zeroed() };
         Self { list, group, squares, chunks, workgroups, states, grid_m, beyond_m, capacity, grids_per_batch, frame }
     }
 
     /// Listed chunks.
     pub(super) fn chunks(&self) -> &wgpu::Buffer {
         &self.chunks
+    }
+
+    /// Creates a variant of a pipeline that no frame has needed yet. Returns false if there is none.
+    pub(super) fn create_next(&self) -> bool {
+        self.list.create_next()
     }
 
     /// Number of listed chunks, for an indirect dispatch.
@@ -114,6 +125,7 @@ impl FarGrids {
             full_density_m: from.detail.full_m,
             reach_m: from.detail.blades_m,
             plant_reach_m: self.beyond_m,
+            heads_thin_m: from.detail.heads_m,
             ..self.frame
         };
     }
@@ -131,12 +143,19 @@ impl FarGrids {
         gpu.queue.write_buffer(&self.workgroups, 0, &[0; 4]);
     }
 
-    pub(super) fn list(&self, pass: &mut wgpu::ComputePass<'_>) {
-        pass.set_pipeline(&self.list);
+    /// Lists the grids of a batch; if `occludes`, without those that solids hide.
+    pub(super) fn list(&self, pass: &mut wgpu::ComputePass<'_>, occludes: bool) {
+        pass.set_pipeline(self.list.with([occludes]));
         pass.set_bind_group(1, &self.group, &[]);
         let side = self.frame.side as u32;
         pass.dispatch_workgroups((side * side).div_ceil(CHUNK), 1, 1);
     }
+}
+
+fn list_pipelines(factory: PassFactory, layout: wgpu::BindGroupLayout) -> OcclusionVariants<wgpu::ComputePipeline> {
+    OcclusionVariants::tested(move |constants| {
+        factory.compute("list_grids", &factory.shader("grids", shaders::GRIDS, &constants), "list_grids", &layout)
+    })
 }
 
 /// Grids along a side of the square that contains all plants in reach; odd, so that the camera is in its central grid.

@@ -6,7 +6,6 @@ mod culling;
 mod far_grids;
 mod flower_texture;
 mod layout;
-mod lowest_land;
 mod shape_texture;
 mod sort;
 mod strip_pipelines;
@@ -95,7 +94,7 @@ impl Blades {
         let plants = &decoded.scene().plants;
         let (detail, grid_m, places) = (quality.detail().on(plants), plants.grid_m, plants_per_grid(decoded));
         let (capacities, by_batches) = list_capacities(plants, &detail, places);
-        let grids = FarGrids::new(factory, decoded, &detail, places, by_batches);
+        let grids = FarGrids::new(factory, decoded, quality, places, by_batches);
         let segments = segments_of(plants, quality);
         let buffers = BladeBuffers::new(gpu, places, capacities);
         let indices = InstanceIndices::new(gpu, segments, plants.flower_shape);
@@ -273,12 +272,13 @@ impl Blades {
         self.grids.begin_batch(gpu, batch);
     }
 
-    pub(crate) fn bend(&self, pass: &mut wgpu::ComputePass<'_>, has_spheres: bool, has_lamps: bool) {
-        self.grids.list(pass);
+    /// Lists and bends the plants in view; if `occludes`, without those that the depth pyramid hides.
+    pub(crate) fn bend(&self, pass: &mut wgpu::ComputePass<'_>, [has_spheres, has_lamps, occludes]: [bool; 3]) {
+        self.grids.list(pass, occludes);
         if self.any_moves_in {
             self.culling.find_ground(pass, self.places.div_ceil(CHUNK));
         }
-        self.culling.run(pass, self.near_workgroups, self.grids.workgroups());
+        self.culling.run(pass, self.near_workgroups, self.grids.workgroups(), occludes);
         pass.set_bind_group(1, &self.compute_group, &[]);
         for (list, bend) in self.bend.of(has_spheres, has_lamps).iter().enumerate() {
             pass.set_pipeline(bend);
@@ -293,7 +293,11 @@ impl Blades {
 
     /// Creates a variant of a pipeline that no frame has needed yet. Returns false if there is none.
     pub(crate) fn create_next(&self) -> bool {
-        self.bend.create_next() || self.strip_pipelines.get().create_next(self.fades) || self.heads.create_next()
+        self.bend.create_next()
+            || self.grids.create_next()
+            || self.culling.create_next()
+            || self.strip_pipelines.get().create_next(self.fades)
+            || self.heads.create_next()
     }
 
     /// Draws the blades in the current blend order.

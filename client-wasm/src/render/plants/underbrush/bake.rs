@@ -13,6 +13,7 @@
 //! - Tips with every second section, every fourth, and one section: 0.2 %, 0.6 % and 2 % of the plant's reach, at worst 4 %, 8 % and 15 %. Components are then
 //!   attached to straight steps, and with one section use the nearest posture.
 
+use super::close_up::close_up;
 pub(super) use crate::render::gpu::constants::VARIANTS;
 use crate::render::gpu::constants::{GRAVITY_M_PER_S2, PETAL, STALK, UNDERBRUSH_LEVELS, WIDTH_UNIT_M};
 use bytemuck::{Pod, Zeroable};
@@ -56,7 +57,8 @@ pub(super) struct Row {
     rgb: u32,
     /// Number of its component in the low half, number of steps below it there in the high half.
     limb_and_steps: u32,
-    _unused: u32,
+    /// Properties for close-ups.
+    close: u32,
     /// Place in its petal; zero for other rows.
     petal: PetalPlace,
 }
@@ -162,7 +164,10 @@ impl Baked {
             let forces = Forces { per_mass_m_per_s2: Vec3::ZERO, pressure_pa: Vec3::ZERO };
             let unbent = posed(plan, placed, Stand { size: 1.0, heading_rad: 0.0, lean_rad: [0.0; 2] }, forces, LookUp::Nearest, 0);
             for &(index, wider) in &kept {
-                for ribbon in ribbons(&plan.components[placed[index].planned], &unbent[index], index, level, wider) {
+                let planned = &plan.components[placed[index].planned];
+                for (nth, mut ribbon) in ribbons(planned, &unbent[index], index, level, wider).into_iter().enumerate() {
+                    let rows = ribbon.len();
+                    ribbon.iter_mut().enumerate().for_each(|(at, row)| row.close = close_up(&planned.component, nth > 0, at, rows));
                     if number == 0 {
                         baked.ribbons.push(ribbon.len() as u32);
                     }
@@ -300,7 +305,7 @@ fn ribbons(planned: &PlannedComponent, one: &Posed, index: usize, level: usize, 
             width_and_material: half | (material as u32) << 16,
             rgb: r | g << 8 | b << 16,
             limb_and_steps: index as u32 | (step as u32) << 16,
-            _unused: 0,
+            close: 0,
             petal,
         }
     };

@@ -1,6 +1,7 @@
 //! Draw lists of the underbrush: one for each species at each level of detail.
 
 use super::bake::{Baked, LEVELS};
+use super::close_up::curve_indices;
 use super::layout::{BLOCK, CHUNK, LISTS};
 use crate::render::gpu::constants;
 use crate::render::gpu::device::Gpu;
@@ -34,8 +35,8 @@ pub(super) struct Lists {
 }
 
 impl Lists {
-    /// Draw lists for a flora with `plants` of each species, at a rain rate (mm/h).
-    pub(super) fn new(gpu: &Gpu, flora: &Flora, plants: &[u32; SPECIES_LIMIT], rain_mm_per_h: f32) -> Self {
+    /// Draw lists for a flora with `plants` of each species, at a rain rate (mm/h); if it `curves`, with curves at the finest level.
+    pub(super) fn new(gpu: &Gpu, flora: &Flora, plants: &[u32; SPECIES_LIMIT], rain_mm_per_h: f32, curves: bool) -> Self {
         let mut of = vec![BrushList::zeroed(); LISTS];
         let mut draw_words = vec![0_u32; LISTS * DRAW_WORDS];
         let (mut steps, mut rows, mut limbs) = (Vec::new(), Vec::new(), Vec::new());
@@ -62,7 +63,7 @@ impl Lists {
                     _pad: [0; 4],
                 };
                 places += own;
-                let triangles = baked.indices(held);
+                let triangles = if curves && level == 0 { curve_indices(&baked.ribbons, held) } else { baked.indices(held) };
                 draw_words[list * DRAW_WORDS] = triangles.len() as u32;
                 indices.push((list, gpu.buffer("underbrush indices", bytemuck::cast_slice(&triangles), BufferUsages::INDEX)));
                 steps.extend(baked.steps);

@@ -2,12 +2,13 @@
 //! light the rows of their ribbons by precomputed tables of postures; indirect draws render the rows.
 
 mod bake;
+mod close_up;
 mod layout;
 mod lists;
 mod passes;
 mod tiles;
 
-use crate::render::gpu::constants::SPARE_DIVISOR;
+use crate::render::gpu::constants::{CLOSE_PX, SPARE_DIVISOR};
 use crate::render::gpu::device::Gpu;
 use crate::render::gpu::pipeline::PassFactory;
 use crate::render::gpu::uniforms::{Nature, UnderbrushFrame};
@@ -27,6 +28,9 @@ pub(crate) use tiles::UnderbrushPlant;
 use tiles::tile_number;
 pub(crate) use tiles::tiles;
 
+/// Height of plants that no picture has (px).
+const NEVER_PX: f32 = 1e9;
+
 pub(crate) struct Underbrush {
     passes: Passes,
     buffers: UnderbrushBuffers,
@@ -39,6 +43,8 @@ pub(crate) struct Underbrush {
     room: [u32; 2],
     /// Number of the newest frame in which time advanced; starts at 2, so that no plant counts as visible in the frame before the first.
     frame_number: u32,
+    /// Height from which plants are drawn as curves with veins (px).
+    close_px: f32,
     chunk_count: u32,
     shown_broken: u32,
     plants: u32,
@@ -69,7 +75,7 @@ impl Underbrush {
         let mut counts = [0_u32; SPECIES_LIMIT];
         grown.iter().for_each(|plant| counts[(plant.species_and_variant & 255) as usize] += 1);
         let rain_mm_per_h = decoded.scene().rain.rate_mm_per_h;
-        let lists = Lists::new(gpu, flora, &counts, rain_mm_per_h);
+        let lists = Lists::new(gpu, flora, &counts, rain_mm_per_h, quality.has_close_ups());
         let mut species = [<Nature as bytemuck::Zeroable>::zeroed(); SPECIES_LIMIT];
         for (entry, (own, plan)) in species.iter_mut().zip(flora.species().iter().zip(flora.plans())) {
             *entry = Nature { height_m: height_m(own), settle_secs: plan.settle_secs, reach_m: flora::reach_m(own), _pad: [0; 4] };
@@ -77,7 +83,7 @@ impl Underbrush {
         let room = room(gpu, quality, flora, &lists, &counts);
         let chunk_limit = tiles.iter().map(|tile| u64::from(tile.count.div_ceil(CHUNK))).sum::<u64>().max(1);
         let buffers = UnderbrushBuffers::new(gpu, &grown, flora, &lists, room, chunk_limit);
-        let passes = Passes::new(factory, &buffers, &lists, force_field, rain_mm_per_h > 0.0);
+        let passes = Passes::new(factory, &buffers, &lists, force_field, [rain_mm_per_h > 0.0, quality.has_close_ups()]);
         let draw_lists = passes.draw_lists(gpu, &buffers, &lists);
         Some(Self {
             passes,
@@ -87,6 +93,7 @@ impl Underbrush {
             species,
             room: room.map(|count| count as u32),
             frame_number: 2,
+            close_px: if quality.has_close_ups() { CLOSE_PX } else { NEVER_PX },
             chunk_count: 0,
             shown_broken: 0,
             plants: grown.len() as u32,
@@ -147,7 +154,7 @@ impl Underbrush {
             step_secs: from.dt_secs.max(0.0),
             reach_m,
             coarseness: from.detail.coarser,
-            _pad: [0; 4],
+            close_px: self.close_px,
             species: self.species,
         };
         gpu.queue.write_buffer(&self.buffers.frame, 0, bytemuck::bytes_of(&frame));
@@ -165,9 +172,10 @@ impl Underbrush {
         }
     }
 
-    pub(crate) fn bend(&self, pass: &mut wgpu::ComputePass<'_>, has_spheres: bool, has_lamps: bool) {
+    /// Lists and bends the plants in view; if `occludes`, without those that the depth pyramid hides.
+    pub(crate) fn bend(&self, pass: &mut wgpu::ComputePass<'_>, [has_spheres, has_lamps, occludes]: [bool; 3]) {
         if self.chunk_count > 0 {
-            self.passes.bend(pass, &self.buffers, self.chunk_count, has_spheres, has_lamps);
+            self.passes.bend(pass, &self.buffers, self.chunk_count, [has_spheres, has_lamps, occludes]);
         }
     }
 
@@ -180,8 +188,8 @@ impl Underbrush {
         if self.chunk_count == 0 {
             return;
         }
-        pass.set_pipeline(&self.passes.drawing);
         for list in &self.draw_lists {
+            pass.set_pipeline(self.passes.drawing_of(list));
             pass.set_bind_group(1, &list.group, &[]);
             pass.set_index_buffer(list.indices.slice(..), wgpu::IndexFormat::Uint32);
             pass.draw_indexed_indirect(&self.draws, (list.number * DRAW_WORDS * 4) as u64);

@@ -1,5 +1,6 @@
 //! Buffers, pipelines and bind groups of the underbrush.
 
+use super::bake::LEVELS;
 use super::layout::{BLOCK, CHUNK, COUNTER_BYTES, RESPONSE_BYTES, ROW_BYTES, VISIBLE_PLANT_BYTES};
 use super::lists::Lists;
 use super::tiles::UnderbrushPlant;
@@ -8,7 +9,8 @@ use crate::render::gpu::pipeline::{DrawDescriptor, PassFactory, bind_as, bind_at
 use crate::render::gpu::shaders;
 use crate::render::gpu::uniforms::DrawnList;
 use crate::render::gpu::uniforms::UnderbrushFrame;
-use crate::render::gpu::variants::{LampVariants, SphereVariants};
+use crate::render::gpu::variants::{LampVariants, OcclusionVariants, SphereVariants};
+use crate::render::inputs::depth_pyramid::{PYRAMID_BINDING, pyramid_layout};
 use crate::render::plants::force_field::CameraForceField;
 use prairie_core::plant::flora::Flora;
 use wgpu::BufferUsages;
@@ -88,11 +90,13 @@ struct Step<P> {
 }
 
 pub(super) struct Passes {
-    sift: Step<wgpu::ComputePipeline>,
+    sift: Step<OcclusionVariants<wgpu::ComputePipeline>>,
     stand: Step<LampVariants<wgpu::ComputePipeline>>,
     finish: Step<wgpu::ComputePipeline>,
     ribbons: Step<SphereVariants<wgpu::ComputePipeline>>,
-    pub(super) drawing: wgpu::RenderPipeline,
+    drawing: wgpu::RenderPipeline,
+    /// Draws the finest level as curves with veins.
+    close: Option<wgpu::RenderPipeline>,
     list_layout: wgpu::BindGroupLayout,
 }
 
@@ -102,31 +106,35 @@ impl Passes {
         buffers: &UnderbrushBuffers,
         lists: &Lists,
         force_field: &CameraForceField,
-        rains: bool,
+        [rains, curves]: [bool; 2],
     ) -> Self {
         let module = factory.shader("underbrush", shaders::UNDERBRUSH, &[]);
         let step = |entry, entries: &[_], resources: &[_]| {
             let layout = factory.layout(entry, entries);
             Step { pipeline: factory.compute(entry, &module, entry, &layout), group: bind_as(&factory.gpu, entry, &layout, resources) }
         };
-        let UnderbrushBuffers { frame, plants, chunks, sifted, sifted_groups, counters, owners, ribbon_groups, .. } = buffers;
+        let UnderbrushBuffers { frame, counters, owners, ribbon_groups, .. } = buffers;
         let list_layout = factory.layout("underbrush list", &[storage(11), storage(12), uniform(15), storage(24), uniform(25)]);
+        let close =
+            DrawDescriptor { label: "underbrush close up", vertex: "vs_close", fragment: Some("fs_close"), ..DrawDescriptor::default() };
         Self {
-            sift: step(
-                "sift",
-                &[uniform(0), read(1), read(2), storage_rw(17), storage_rw(18)],
-                &[(0, frame), (1, plants), (2, chunks), (17, sifted), (18, sifted_groups)],
-            ),
+            sift: sift_step(factory, buffers),
             finish: step(
                 "finish",
                 &[uniform(0), storage_rw(5), storage_rw(8), uniform(15), storage_rw(20), storage_rw(22)],
                 &[(0, frame), (5, counters), (8, &lists.draws), (15, &lists.settings), (20, owners), (22, ribbon_groups)],
             ),
             stand: stand_step(factory, buffers, lists, force_field),
-            ribbons: ribbon_step(factory, buffers, lists, rains),
+            ribbons: ribbon_step(factory, buffers, lists, [rains, curves]),
             drawing: factory.draw(&module, Some(&list_layout), &DrawDescriptor { label: "underbrush", ..DrawDescriptor::default() }),
+            close: curves.then(|| factory.draw(&module, Some(&list_layout), &close)),
             list_layout,
         }
+    }
+
+    /// The pipeline that draws a list.
+    pub(super) fn drawing_of(&self, list: &SpeciesDrawList) -> &wgpu::RenderPipeline {
+        self.close.as_ref().filter(|_| list.number.is_multiple_of(LEVELS)).unwrap_or(&self.drawing)
     }
 
     /// The draw lists of all species and levels of detail that have plants.
@@ -150,7 +158,7 @@ impl Passes {
 
     /// Creates a variant of a pipeline that no frame has needed yet. Returns false if there is none.
     pub(super) fn create_next(&self) -> bool {
-        self.ribbons.pipeline.create_next() || self.stand.pipeline.create_next()
+        self.ribbons.pipeline.create_next() || self.sift.pipeline.create_next() || self.stand.pipeline.create_next()
     }
 
     /// Culls the plants of `chunk_count` chunks and bends the visible ones.
@@ -159,10 +167,9 @@ impl Passes {
         pass: &mut wgpu::ComputePass<'_>,
         buffers: &UnderbrushBuffers,
         chunk_count: u32,
-        has_spheres: bool,
-        has_lamps: bool,
+        [has_spheres, has_lamps, occludes]: [bool; 3],
     ) {
-        pass.set_pipeline(&self.sift.pipeline);
+        pass.set_pipeline(self.sift.pipeline.with([occludes]));
         pass.set_bind_group(1, &self.sift.group, &[]);
         pass.dispatch_workgroups(chunk_count, 1, 1);
         pass.set_pipeline(self.stand.pipeline.of(has_lamps));
@@ -210,12 +217,26 @@ fn stand_step(
     Step { pipeline, group }
 }
 
+/// The pass that lists the plants that may be in view.
+fn sift_step(factory: &PassFactory, buffers: &UnderbrushBuffers) -> Step<OcclusionVariants<wgpu::ComputePipeline>> {
+    let UnderbrushBuffers { frame, plants, chunks, sifted, sifted_groups, .. } = buffers;
+    let layout = factory.layout("sift", &[uniform(0), read(1), read(2), storage_rw(17), storage_rw(18), pyramid_layout()]);
+    let resources = [(0, frame), (1, plants), (2, chunks), (17, sifted), (18, sifted_groups), (PYRAMID_BINDING, &factory.pyramid)];
+    let group = bind_as(&factory.gpu, "sift", &layout, &resources);
+    let factory = factory.clone();
+    let pipeline = OcclusionVariants::tested(move |constants| {
+        let module = factory.shader("underbrush", shaders::UNDERBRUSH, &constants);
+        factory.compute("sift", &module, "sift", &layout)
+    });
+    Step { pipeline, group }
+}
+
 /// The pass that bends and lights the rows of the ribbons.
 fn ribbon_step(
     factory: &PassFactory,
     buffers: &UnderbrushBuffers,
     lists: &Lists,
-    rains: bool,
+    [rains, curves]: [bool; 2],
 ) -> Step<SphereVariants<wgpu::ComputePipeline>> {
     let layout = factory.layout("ribbons", &[read(10), read(13), read(14), uniform(15), read(16), read(21), storage_rw(23)]);
     let Lists { steps, rows, settings, limbs, .. } = lists;
@@ -224,7 +245,7 @@ fn ribbon_step(
     let group = bind_as(&factory.gpu, "ribbons", &layout, &resources);
     let factory = factory.clone();
     let pipeline = SphereVariants::new(move |[lamps, spheres]| {
-        let module = factory.shader("underbrush", shaders::UNDERBRUSH, &[lamps, spheres, ("trembles", rains)]);
+        let module = factory.shader("underbrush", shaders::UNDERBRUSH, &[lamps, spheres, ("trembles", rains), ("curves", curves)]);
         factory.compute("ribbons", &module, "ribbons", &layout)
     });
     Step { pipeline, group }

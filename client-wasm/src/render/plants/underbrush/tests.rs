@@ -22,6 +22,7 @@ use prairie_core::wire::{BrokenPlant, ObjectPose, ServerMessage};
 use std::collections::HashMap;
 use wgpu::BufferUsages;
 
+mod close_up;
 mod drawn;
 
 const SPECIES: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../server/scenes/species.toml"));
@@ -168,6 +169,7 @@ impl Bender {
         let factory = PassFactory {
             gpu: gpu.clone(),
             frame_layout: picture.renderer.bindings.layout.clone(),
+            pyramid: picture.renderer.bindings.pyramid.clone(),
             samples: 1,
             has_kinds: true,
             soft_shadows: true,

@@ -1,0 +1,182 @@
+//! Explains a scene and its plan.
+
+use super::fronts::{Fronts, FrontsInUse};
+use super::{Plan, Progress, is_demanded};
+use crate::scenes::{Explanation, ExplanationRow as Row, OpenScene, millis};
+use prairie_core::scene::{PlantCover, Scene, VehicleKind, WindMethod, WindTiling};
+
+/// Explains a scene, which is planned or measured for it.
+pub fn explain(scene: &OpenScene, used: &FrontsInUse, progress: &mut dyn Progress) -> Explanation {
+    explain_plan(scene, &scene.plan(used, progress), used)
+}
+
+/// Explains a scene without pilot runs: its methods, and what it leaves out.
+pub(super) fn explain_unmeasured(scene: &OpenScene) -> Explanation {
+    let plan = Plan::unmeasured(scene);
+    let sources = vec![format!("errors and costs: `prairie explain {}` measures them", scene.loaded.name)];
+    Explanation { sources, ..explain_plan(scene, &plan, &FrontsInUse { fronts: Fronts::built_in(), origin: String::new() }) }
+}
+
+pub(super) fn explain_plan(scene: &OpenScene, plan: &Plan, used: &FrontsInUse) -> Explanation {
+    let own = &scene.loaded.scene;
+    Explanation {
+        scene: scene.loaded.name.clone(),
+        is_planned: is_demanded(own),
+        rows: vec![wind_row(scene, plan), bend_row(scene, plan), plants_row(scene), objects_row(scene)],
+        left_out: left_out(own),
+        not_planned: not_planned(own),
+        sources: sources(plan, used),
+        conflicts: plan.conflicts.clone(),
+    }
+}
+
+/// The stated fields of a section.
+fn stated(scene: &OpenScene, sections: &[&str]) -> Vec<String> {
+    let is_in = |path: &&String| sections.iter().any(|section| path.starts_with(&format!("{section}.")));
+    scene.stated.iter().filter(is_in).cloned().collect()
+}
+
+fn wind_row(scene: &OpenScene, plan: &Plan) -> Row {
+    let (own, stated) = (&scene.loaded.scene, stated(scene, &["wind"]));
+    let part = "wind that the grass feels".to_owned();
+    let Ok(wind) = &plan.wind else {
+        let method = super::WindSettings::of(own).words(own.wind.method);
+        let error = plan.wind.as_ref().err().map_or_else(String::new, |reason| format!("not measured: {reason}"));
+        return Row { part, method, error, server_ms_per_tick: None, stated, planned: Vec::new() };
+    };
+    let (before, chosen) = (wind.own.settings, wind.chosen.settings);
+    let changes = [
+        ("wind.cells", before.cells != chosen.cells),
+        ("wind.advection", before.advection != chosen.advection),
+        ("wind.time", before.time != chosen.time),
+        ("wind.diffusion", before.diffusion != chosen.diffusion),
+        ("wind.pressure", before.pressure != chosen.pressure),
+        ("wind.pressure_tolerance", before.tolerance != chosen.tolerance),
+        ("wind.step_secs", before.ticks != chosen.ticks),
+        ("stream.wind_error_m_per_s", own.stream.wind_error_m_per_s != wind.wind_error_m_per_s),
+    ];
+    let mut planned: Vec<_> = changes.into_iter().filter(|(_, is_changed)| *is_changed).map(|(field, _)| field.to_owned()).collect();
+    if before != chosen {
+        let (own_ms, own_percent) = (millis(wind.own.ms_per_tick), 100.0 * wind.own.error);
+        planned.push(format!("instead of {}, with {own_percent:.3} % and {own_ms} ms", before.words(own.wind.method)));
+    }
+    Row {
+        part,
+        method: chosen.words(own.wind.method),
+        error: format!("{:.3} % of {:.2} m/s rms", 100.0 * wind.chosen.error, wind.reference.1),
+        server_ms_per_tick: Some(wind.chosen.ms_per_tick)
+            .filter(|_| own.wind.method == WindMethod::StableFluids || Fronts::knows(chosen.pressure)),
+        stated,
+        planned,
+    }
+}
+
+fn bend_row(scene: &OpenScene, plan: &Plan) -> Row {
+    let bend = &plan.bend;
+    let (codes_deg, rest_deg) = (bend.theta_error_deg, f64::from(bend.rest_theta_rad).to_degrees());
+    Row {
+        part: "bending of the grass".to_owned(),
+        method: format!("{} waves; codes to {codes_deg} deg, at rest below {rest_deg:.3} deg", bend.scheme.word()),
+        error: match bend.measured_deg {
+            Some(measured_deg) => {
+                format!("{:.3} deg rms behind a car, of which {measured_deg:.3} by scheme and rest", bend.error_deg())
+            }
+            None => {
+                format!("at most {codes_deg} deg by codes; not measured behind a car")
+            }
+        },
+        server_ms_per_tick: bend.ms_per_tick,
+        stated: stated(scene, &["bend", "grass", "stream"]),
+        planned: bend.planned.clone(),
+    }
+}
+
+fn plants_row(scene: &OpenScene) -> Row {
+    let own = &scene.loaded.scene;
+    let method = match own.plants.cover {
+        PlantCover::Shells => format!("{} shells", own.shells.layers),
+        _ => format!("blades of {} segments that lag, moved by `{}`", own.grass.segments, own.plants.integrator.word()),
+    };
+    let stated = stated(scene, &["plants", "shells"]);
+    Row {
+        part: "blades and their picture".to_owned(),
+        method,
+        error: "not measured for a scene".to_owned(),
+        server_ms_per_tick: None,
+        stated,
+        planned: Vec::new(),
+    }
+}
+
+fn objects_row(scene: &OpenScene) -> Row {
+    let objects = &scene.loaded.scene.objects;
+    let kinds = VehicleKind::ALL.map(|kind| kind.name()).join(", ");
+    let method = format!("rigid bodies, at most {} of {kinds}; {} drive themselves", objects.limit, objects.self_driving);
+    Row {
+        part: "objects".to_owned(),
+        method,
+        error: "not measured for a scene".to_owned(),
+        server_ms_per_tick: None,
+        stated: stated(scene, &["objects"]),
+        planned: Vec::new(),
+    }
+}
+
+/// Parts that the scene leaves out, with the field that says so.
+fn left_out(scene: &Scene) -> Vec<String> {
+    let Scene { wind, objects, .. } = scene;
+    let parts = [
+        (wind.dust.release_per_s == 0.0, "dust: `wind.dust.release_per_s` is 0, so no density is carried"),
+        (wind.sources == 0, "gusts: `wind.sources` is 0"),
+        (wind.turbulence == 0.0, "gusts below the cells: `wind.turbulence` is 0"),
+        (wind.primitives.is_empty(), "whirls and jets: there is no `[[wind.primitives]]`"),
+        (wind.canopy_drag_per_m == 0.0, "drag of the grass: `wind.canopy_drag_per_m` is 0"),
+        (wind.canopy_frequency_hz == 0.0, "grass that acts back on the wind: `wind.canopy_frequency_hz` is 0"),
+        (wind.crown_drag_per_m == 0.0, "drag of crowns: `wind.crown_drag_per_m` is 0"),
+        (!crate::weather::pilot::has_walls(scene), "land as an obstacle: `wind.terrain` is \"follow\""),
+        (scene.natural_wind.strength_rad_per_s2 == 0.0, "gusts of noise: `natural_wind.strength_rad_per_s2` is 0"),
+        (scene.drawn_winds.is_empty(), "drawn winds: there is no `[[drawn_winds]]`"),
+        (objects.limit == 0, "vehicles: `objects.limit` is 0, so no physics of bodies"),
+        (objects.balls == 0, "balls: `objects.balls` is 0"),
+        (scene.underbrush.is_empty(), "underbrush: there is no `[[underbrush]]`"),
+        (scene.models.is_empty(), "models on the land: there is no `[[models]]`"),
+        (!scene.snow.lies(), "snow: `snow.depth_m` is 0"),
+        (scene.rain.rate_mm_per_h == 0.0, "rain: `rain.rate_mm_per_h` is 0"),
+        (scene.race.gates.is_empty(), "a race: there is no `[[race.gates]]`"),
+        (scene.lights.is_empty(), "lamps: there is no `[[lights]]`"),
+    ];
+    parts.into_iter().filter(|(is_out, _)| *is_out).map(|(_, why)| why.to_owned()).collect()
+}
+
+/// Settings that no plan chooses, and demands that no plan looks at.
+fn not_planned(scene: &Scene) -> Vec<String> {
+    let demands = [
+        (!scene.accuracy.blades.is_empty(), "`accuracy.blades`: the error of blades is not measured for a scene"),
+        (scene.accuracy.picture > 0.0, "`accuracy.picture`: the error of a picture is not measured for a scene"),
+        (scene.budget.client_ms > 0.0, "`budget.client_ms`: the time of a picture depends on the client, whose quality adapts by itself"),
+        (scene.budget.kbit_per_s > 0.0, "`budget.kbit_per_s`: the data depends on what moves; `prairie serve --client-kbit` limits it"),
+    ];
+    let always = [
+        "vertical cells of the wind: the grass feels the lowest cells, so that their height is a part of the model",
+        "`grass.segments`, `plants.integrator`: their error is not measured for a scene",
+        "`bend.seams`, `bend.object_contact` and their like: they are other models, not other errors",
+        "`wind.dust.advection`: the error is that of the wind alone",
+    ];
+    let patch = (scene.wind.tiling == WindTiling::Patch)
+        .then_some("`wind.cells`: with `tiling = \"patch\"` the offset of a patch is a number of cells");
+    demands.into_iter().filter(|(is_made, _)| *is_made).map(|(_, why)| why).chain(always).chain(patch).map(str::to_owned).collect()
+}
+
+fn sources(plan: &Plan, used: &FrontsInUse) -> Vec<String> {
+    let mut sources = Vec::new();
+    if let Ok(wind) = &plan.wind {
+        let ([x, y, z], [candidates, runs]) = (wind.reference.0, wind.runs);
+        sources.push(format!(
+            "errors: {runs} pilot runs of {candidates} candidates over {} s from the wind after its warm-up, against a run in double precision on {x} × {y} × {z} \
+             cells with two steps a tick",
+            crate::weather::pilot::HORIZON_SECS
+        ));
+    }
+    sources.push(format!("costs: {}", used.origin));
+    sources
+}
