@@ -1,19 +1,74 @@
-// The plan of the scene: what is modelled, by which methods, with which errors and costs, and what gives way.
+// The plan of the scene: what is modelled, by which methods, with which errors and costs, and what gives way; and in which detail the run is at present.
 
 import { byId, element, marked } from "./elements.js";
 
-// Asks the server for the plan each time the section is opened, since the scene may have changed.
+// Time between two looks at the run while the section is open (ms).
+const PERIOD_MS = 2000;
+
+// Asks the server for the plan while the section is open, since scene and run change.
 export function showPlan() {
-  byId("plan").addEventListener("toggle", async () => {
+  let timer = 0;
+  const update = async () => {
+    clearTimeout(timer);
     if (!byId("plan").open) return;
     try {
       const response = await fetch("/api/plan");
       if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
-      fill(await response.json());
+      const plan = await response.json();
+      showNow(plan.now);
+      fill(plan);
     } catch (error) {
+      byId("plan-now").replaceChildren();
       byId("plan-parts").replaceChildren(element("p", `The server does not tell its plan: ${error.message}`, "aside"));
     }
+    timer = setTimeout(update, PERIOD_MS);
+  };
+  byId("plan").addEventListener("toggle", update);
+}
+
+// The run at present; nothing in a scene whose detail stays as it is.
+function showNow({ control, may_set_budget, wind_step_secs, awake_limit, gives_way, decisions }) {
+  if (control === null && decisions.length === 0) {
+    byId("plan-now").replaceChildren();
+    return;
+  }
+  // A field that somebody is typing into stays.
+  if (byId("plan-now").contains(document.activeElement) && document.activeElement.matches("input")) return;
+  const lines = [`Wind stepped every ${(1e3 * wind_step_secs).toFixed(0)} ms, at most ${awake_limit} patches awake`];
+  if (control !== null) lines.unshift(...controlLines(control));
+  if (gives_way.length) lines.push(`Gives way to the load: ${gives_way.join("; ")}`);
+  const newest = decisions.slice(-5).reverse().map(({ time_secs, detail, reason }) => `${time_secs.toFixed(1)} s: ${reason} → ${detail}`);
+  byId("plan-now").replaceChildren(
+    element("h4", "Now"),
+    ...lines.map((line) => element("p", line)),
+    ...(may_set_budget ? [budgetForm(control.budget_ms)] : []),
+    ...(newest.length ? [element("h4", "Newest decisions"), list(newest)] : []),
+  );
+}
+
+function controlLines({ budget_ms, busy_ms, wind_error, wind_tolerance, bend_error_deg, bend_tolerance_deg }) {
+  const lines = [`A tick takes ${busy_ms.toPrecision(3)} ms of ${budget_ms.toPrecision(3)} ms`];
+  if (wind_error !== null) lines.push(`Expected error of the wind ${(100 * wind_error).toFixed(2)} % of ${(100 * wind_tolerance).toFixed(2)} %`);
+  if (bend_tolerance_deg !== null) lines.push(`Expected error of the bend ${bend_error_deg.toFixed(2)}° of ${bend_tolerance_deg.toFixed(2)}°`);
+  return lines;
+}
+
+// Sets the time that a tick may take on the server.
+function budgetForm(budget_ms) {
+  const form = element("form");
+  const label = element("label", "Budget of a tick (ms) ", "line");
+  const input = element("input");
+  Object.assign(input, { type: "number", min: "0.001", max: "1000", step: "any", value: String(Number(budget_ms.toPrecision(3))) });
+  label.append(input);
+  const outcome = element("p", "", "aside");
+  form.append(label, outcome);
+  form.addEventListener("submit", async (event) => {
+    event.preventDefault();
+    const response = await fetch("/api/budget", { method: "POST", body: JSON.stringify({ server_ms: input.valueAsNumber }) });
+    outcome.textContent = response.ok ? "" : (await response.json()).error;
+    if (response.ok) input.blur();
   });
+  return form;
 }
 
 function fill({ is_planned, rows, left_out, not_planned, conflicts, sources }) {

@@ -19,6 +19,7 @@ pub mod bend;
 pub mod charts;
 mod checksum;
 mod config;
+pub mod detail;
 pub mod escaped;
 mod file;
 pub mod histogram;

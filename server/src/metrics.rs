@@ -169,6 +169,30 @@ pub const METRICS: &[Metric] = &[
     world("courant", Gauge, Unit::Ratio, "largest Courant number of a sub-step of the bend field, as a fraction of its limit", |s| {
         s.diagnostics.courant.into()
     }),
+    world("wind_step_secs", Gauge, Unit::Seconds, "step of the wind's solver", |s| s.diagnostics.wind_step_secs.into()),
+    world(
+        "wind_step_error_m_per_s",
+        Gauge,
+        Unit::MetresPerSecond,
+        "estimated error of the wind at the ground that its step adds in two seconds; 0 in a scene without `[accuracy]` and `[budget]`",
+        |s| s.diagnostics.wind_step_error_m_per_s.into(),
+    ),
+    world("wind_doubled_error_m_per_s", Gauge, Unit::MetresPerSecond, "the same of steps twice as long", |s| {
+        s.diagnostics.wind_doubled_error_m_per_s.into()
+    }),
+    world("error_samples", Counter, Unit::Count, "estimates of these errors", |s| s.diagnostics.error_samples.into()),
+    world(
+        "bend_step_error_deg",
+        Gauge,
+        Unit::Degrees,
+        "estimated error of the bending angle that the step adds while waves decay; 0 in a scene without `[accuracy]` and `[budget]`",
+        |s| s.diagnostics.bend_step_error_deg.into(),
+    ),
+    world("awake_limit", Gauge, Unit::Count, "most awake patches at present", |s| s.diagnostics.awake_limit.into()),
+    world("degradation", Gauge, Unit::Count, "how much gives way to the load at present, from 0 (nothing) to 5", |s| {
+        s.diagnostics.degradation.into()
+    }),
+    world("decisions", Counter, Unit::Count, "decisions about the detail of the simulation", |s| s.diagnostics.decisions.into()),
     world("laid_tiles", Gauge, Unit::Count, "tiles of 8 × 8 cells with flattened grass or pressed snow", |s| {
         s.diagnostics.laid_tiles.into()
     }),

@@ -100,6 +100,7 @@ pub(crate) async fn run_with_menu(
         published: runner.published(),
         commands: runner.commands(),
         attendance: runner.attendance(),
+        budget_ms: runner.budget_ms(),
         proofs,
         scene_name: config.scene.name.clone(),
         explanation: Arc::clone(&config.scene.explanation),
@@ -108,6 +109,7 @@ pub(crate) async fn run_with_menu(
         limits: config.limits,
         journal,
         fields: FieldSampler::new(&config.scene),
+        tick_hz: timing.tick_hz,
         access: Access::new(&config.allow_origins, &config.allow_hosts, config.tls.clone()),
         admission: admission.clone(),
         page_errors: config.logs_page_errors.then(|| PageErrors::new(Instant::now())),
@@ -139,7 +141,7 @@ pub(crate) async fn run_with_menu(
 /// Rates and threads of the runner.
 fn timing(config: &Config) -> Timing {
     let Config { publish_hz, threads, pause_after, .. } = *config;
-    Timing { tick_hz: config.scene.scene.tick_hz, publish_hz, threads, pause_after }
+    Timing { tick_hz: config.scene.scene.tick_hz, publish_hz, threads, pause_after, demands: config.scene.explanation.demands }
 }
 
 /// Starts the stream to the clients, which are the only audience of the grass unless there is a recording, which shows all patches.

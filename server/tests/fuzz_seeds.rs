@@ -2,6 +2,7 @@
 //!
 //! `PRAIRIE_UPDATE=1` writes them again; needed after a change of a format.
 
+use prairie::detail::{Decision, Detail, Reason};
 use prairie::journal::{Segment, WorldFolder, find, open, open_checkpoint};
 use prairie::runner::Simulation as _;
 use prairie::scenes::LoadedScene;
@@ -160,6 +161,10 @@ fn commands(tick: u64) -> Vec<Command> {
         5 => vec![Command::Drive { client: 1, number: 0, drive: Drive { throttle: 0.8, steer: 0.3, ..Drive::default() } }],
         9 => vec![Command::Cameras(vec![Camera { client: 1, eye_m: [8.0, 2.0, 8.0] }])],
         20 => vec![Command::Join { client: 2 }, Command::Spawn { client: 2, kind: VehicleKind::ALL[1] }, Command::Leave { client: 1 }],
+        23 => {
+            let detail = Detail { wind_ticks: 4, awake_limit: 20, publish_divisor: 2 };
+            vec![Command::Adapt(Decision { tick, detail, level: 2, reason: Reason::Overload { busy_ms: 9.0, budget_ms: 8.0 } })]
+        }
         25 => vec![Command::Return { client: 1 }, Command::Remove { client: 2 }],
         _ => vec![],
     }

@@ -1,5 +1,6 @@
 //! A world that is saved and restored continues bit for bit, on any number of threads.
 
+use prairie::detail::{Decision, Detail, Reason};
 use prairie::scenes;
 use prairie::world::{Camera, Command, World, WorldState};
 use prairie_core::scene::VehicleKind;
@@ -28,8 +29,26 @@ fn commands(tick: u64, middle_m: [f32; 2]) -> Vec<Command> {
     commands
 }
 
+/// A change of detail, as the server decides on it.
+fn adapt(world: &World, tick: u64) -> Option<Command> {
+    let range = world.detail_range();
+    let (longest, own) = (*range.wind_ticks.last().unwrap(), range.own);
+    let detail = match tick {
+        100 => Detail { wind_ticks: longest, ..own },
+        149 => Detail { awake_limit: 3, publish_divisor: 2, ..own },
+        260 => own,
+        _ => return None,
+    };
+    Some(Command::Adapt(Decision { tick, detail, level: 3, reason: Reason::Overload { busy_ms: 9.0, budget_ms: 8.0 } }))
+}
+
 fn on_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(run)
+}
+
+fn step(world: &mut World, tick: u64, middle_m: [f32; 2]) {
+    let adapt = adapt(world, tick);
+    world.step(&[commands(tick, middle_m), adapt.into_iter().collect()].concat());
 }
 
 /// Compares a world with a copy that was saved after `before` ticks, for `after` more.
@@ -38,7 +57,7 @@ fn continues(scene: &str, before: u64, after: u64) {
     let middle_m = loaded.scene.extent_m().map(|m| 0.5 * m);
     let mut world = World::new(&loaded.scene, loaded.maps()).unwrap();
     let mut younger = world.save();
-    on_threads(2, || (0..before).for_each(|tick| world.step(&commands(tick, middle_m))));
+    on_threads(2, || (0..before).for_each(|tick| step(&mut world, tick, middle_m)));
     let bytes = world.save().encode();
     world.save_into(&mut younger);
     assert!(younger.encode() == bytes, "{scene}: nothing remains of the state whose memory is used again");
@@ -49,7 +68,7 @@ fn continues(scene: &str, before: u64, after: u64) {
     assert_eq!(copy.checksum(), world.checksum(), "{scene}");
     let run = |world: &mut World| {
         let step = |tick| {
-            world.step(&commands(tick, middle_m));
+            step(world, tick, middle_m);
             world.checksum()
         };
         (before..before + after).map(step).collect::<Vec<_>>()

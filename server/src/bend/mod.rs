@@ -1,4 +1,5 @@
-//! Threads and checks of the bend field, which is simulated by [`prairie_core::grass`].
+//! Threads, checks and step errors of the bend field, which is simulated by [`prairie_core::grass`].
 
+pub(crate) mod halving;
 pub mod pool;
 pub mod stability;

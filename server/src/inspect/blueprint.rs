@@ -55,6 +55,7 @@ pub(super) fn initial_layout(scene: &Scene, heights: &HeightMap) -> RecordingStr
         plot_views.push(layout.view("TimeSeries", plot.title, "metrics", &contents, &[("PlotLegend", &legend)])?);
     }
 
+    plot_views.push(layout.view("TextLog", "Decisions about the detail", "decisions", &["$origin/**"], &[])?);
     let (_, top) = layout.container(ContainerKind::Horizontal, [terrain, map], |top| top.with_col_shares([1.9, 1.0]))?;
     let (_, bottom) = layout.container(ContainerKind::Grid, plot_views, |grid| grid.with_grid_columns(5))?;
     let (root, _) = layout.container(ContainerKind::Vertical, [top, bottom], |root| root.with_row_shares([2.2, 1.0]))?;

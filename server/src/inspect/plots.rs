@@ -51,7 +51,12 @@ pub(super) const PLOTS: &[Plot] = &[
     Plot { folder: "divergence", title: "Relative divergence of the wind", scale: 1.0, curves: &[curve("divergence_rms", "RMS", BLUE)] },
     Plot { folder: "wind_energy", title: "Kinetic energy of the wind (J/kg)", scale: 1.0, curves: &[curve("wind_energy", "wind", BLUE)] },
     Plot { folder: "bend_activity", title: "Activity of the bend field", scale: 1.0, curves: &[curve("bend_activity", "bend", YELLOW)] },
-    Plot { folder: "awake", title: "Awake patches", scale: 1.0, curves: &[curve("awake_patches", "awake patches", YELLOW)] },
+    Plot {
+        folder: "awake",
+        title: "Awake patches",
+        scale: 1.0,
+        curves: &[curve("awake_patches", "awake patches", YELLOW), curve("awake_limit", "limit", GREY)],
+    },
     Plot {
         folder: "damage",
         title: "Flattened tiles, broken plants",
@@ -81,6 +86,27 @@ pub(super) const PLOTS: &[Plot] = &[
             curve("dropped_tracks", "tracks discarded", BROWN),
             curve("rejected_motions", "motions rejected", RED),
             curve("wind_resets", "winds restarted", BLUE),
+        ],
+    },
+    Plot {
+        folder: "step_errors",
+        title: "Errors of the time steps (m/s, °)",
+        scale: 1.0,
+        curves: &[
+            curve("wind_step_error_m_per_s", "wind", BLUE),
+            curve("wind_doubled_error_m_per_s", "wind, steps twice as long", GREY),
+            curve("bend_step_error_deg", "bend", YELLOW),
+        ],
+    },
+    Plot { folder: "wind_step", title: "Step of the wind (ms)", scale: 1e3, curves: &[curve("wind_step_secs", "wind", BLUE)] },
+    Plot {
+        folder: "detail",
+        title: "Detail",
+        scale: 1.0,
+        curves: &[
+            curve("degradation", "degradation", RED),
+            curve("decisions", "decisions", ORANGE),
+            curve("error_samples", "estimates of errors", GREY),
         ],
     },
     Plot { folder: "sent", title: "Sent to clients (kB/s)", scale: 1e-3, curves: &[curve("sent_bytes_per_s", "sent", TEAL)] },

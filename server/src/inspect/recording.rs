@@ -6,6 +6,7 @@
 //! | `world/wind` | wind arrows: the length is the distance covered in 1.2 s, the colour is the speed |
 //! | `world/objects`, `world/trails` | boxes with poses and labels; trails of the last seconds |
 //! | `map/bend`, `map/objects`, `map/scale` | bending angles from above, one class per code; positions of the objects; colour scale |
+//! | `decisions` | changes of the detail of the simulation, each with its reason |
 //! | `metrics/…` | the metrics of [`PLOTS`](super::plots::PLOTS) |
 
 use super::arrows::WindArrows;
@@ -31,7 +32,7 @@ use rerun::datatypes::ChannelDatatype;
 use rerun::external::re_log_encoding::{Decodable as _, StreamFooter};
 use rerun::{
     AnnotationContext, Arrows3D, AsComponents, Boxes3D, LineStrips2D, LineStrips3D, Mesh3D, Points2D, Quaternion, Radius, RecordingStream,
-    Rgba32, Scalars, SegmentationImage, SeriesLines, ViewCoordinates,
+    Rgba32, Scalars, SegmentationImage, SeriesLines, TextLog, TextLogLevel, ViewCoordinates,
 };
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
@@ -54,6 +55,8 @@ pub(super) struct Recording {
     settings: Objects,
     wind_tick: Option<u64>,
     trails: Trails,
+    /// Number of decisions about the detail so far.
+    decisions: u64,
 }
 
 impl Recording {
@@ -71,6 +74,7 @@ impl Recording {
             settings: scene.objects.clone(),
             wind_tick: None,
             trails: Trails::default(),
+            decisions: 0,
         };
         recording.write_static(&TerrainMesh::new(&layout, heights, &scene.light))?;
         Ok(recording)
@@ -124,6 +128,18 @@ impl Recording {
         self.log("map/bend", &SegmentationImage::new(self.map.codes().to_vec(), format).with_opacity(1.0))
     }
 
+    /// The decisions since the last frame; those from before the recording are left out.
+    fn write_decisions(&mut self, snapshot: &Snapshot) -> Result<(), InspectError> {
+        let count = snapshot.diagnostics.decisions;
+        let new = (count - self.decisions.min(count)).min(snapshot.decisions.len() as u64) as usize;
+        self.decisions = count;
+        for decision in &snapshot.decisions[snapshot.decisions.len() - new..] {
+            let text = format!("{}: {}", decision.reason, decision.detail);
+            self.log("decisions", &TextLog::new(text).with_level(TextLogLevel::INFO))?;
+        }
+        Ok(())
+    }
+
     fn write_objects(&mut self, snapshot: &Snapshot) -> Result<(), InspectError> {
         let objects = &snapshot.objects;
         self.log("world/objects", &boxes(objects, &self.settings))?;
@@ -154,6 +170,7 @@ impl Sink for Recording {
             self.log("world/wind", &arrows.with_colors(colours.into_iter().map(Rgba32::from)).with_radii([ARROW_RADIUS_M]))?;
         }
         self.write_objects(snapshot)?;
+        self.write_decisions(snapshot)?;
         let series = PLOTS.iter().flat_map(|plot| plot.curves.iter().map(move |curve| (plot, curve)));
         series.into_iter().try_for_each(|(plot, curve)| self.log(&plot.entity(curve), &Scalars::single(plot.scale * curve.value(frame))))
     }

@@ -14,7 +14,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// Version of the state and of everything that computes it. Another version begins new worlds.
-const VERSION: u32 = 9;
+const VERSION: u32 = 10;
 /// Length of the key for the proofs of clients (bytes).
 const KEY_BYTES: usize = 32;
 /// Generations that are never deleted to stay within the limit.

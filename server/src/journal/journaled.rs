@@ -5,6 +5,7 @@ use super::folder::Folder;
 use super::health::Health;
 use super::unchanged::Unchanged;
 use super::writer::{Entry, Writer};
+use crate::detail::DetailRange;
 use crate::runner::Simulation;
 use crate::snapshot::{PatchQuantiser, Snapshot};
 use crate::world::{Command, World};
@@ -166,6 +167,14 @@ impl Simulation for JournaledWorld {
 
     fn key(&self) -> Option<[u8; 32]> {
         self.key
+    }
+
+    fn watch_errors(&mut self) {
+        self.world.watch_errors();
+    }
+
+    fn detail_range(&self) -> Option<DetailRange> {
+        Some(self.world.detail_range())
     }
 
     fn departed(&self) -> Vec<u32> {

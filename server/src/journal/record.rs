@@ -67,6 +67,7 @@ pub fn open_record(bytes: &[u8]) -> Result<(Step, usize), Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::detail::{Decision, Detail, Reason};
     use crate::world::Camera;
     use prairie_core::scene::VehicleKind;
     use prairie_core::wire::Drive;
@@ -85,6 +86,18 @@ mod tests {
             any::<u32>().prop_map(|client| Command::Join { client }),
             any::<u32>().prop_map(|client| Command::Leave { client }),
             any::<u32>().prop_map(|client| Command::Return { client }),
+            (any::<u64>(), any::<[u32; 3]>(), any::<u8>(), any::<[f32; 2]>(), 0..4).prop_map(
+                |(tick, [wind_ticks, awake_limit, publish_divisor], level, [one, other], kind)| {
+                    let reason = match kind {
+                        0 => Reason::Calm { error: one, allowed: other },
+                        1 => Reason::Stirred { error: one, allowed: other },
+                        2 => Reason::Overload { busy_ms: one, budget_ms: other },
+                        _ => Reason::Relief { busy_ms: one, budget_ms: other },
+                    };
+                    let detail = Detail { wind_ticks, awake_limit, publish_divisor };
+                    Command::Adapt(Decision { tick, detail, level, reason })
+                }
+            ),
         ]
     }
 

@@ -44,7 +44,7 @@ impl Unchanged {
                 self.drives.remove(client);
                 true
             }
-            Command::Join { .. } => true,
+            Command::Join { .. } | Command::Adapt(_) => true,
         }
     }
 }

@@ -17,6 +17,10 @@ pub enum Unit {
     BytesPerSecond,
     /// Joules per kilogram of air.
     JoulesPerKilogram,
+    /// Metres per second.
+    MetresPerSecond,
+    /// Degrees.
+    Degrees,
 }
 
 impl Unit {
@@ -28,6 +32,8 @@ impl Unit {
             Self::Bytes => "bytes",
             Self::BytesPerSecond => "bytes/s",
             Self::JoulesPerKilogram => "J/kg",
+            Self::MetresPerSecond => "m/s",
+            Self::Degrees => "°",
         }
     }
 
@@ -38,6 +44,8 @@ impl Unit {
             Self::Seconds => "_secs",
             Self::Bytes => "_bytes",
             Self::BytesPerSecond => "_bytes_per_s",
+            Self::MetresPerSecond => "_m_per_s",
+            Self::Degrees => "_deg",
         }
     }
 
@@ -50,6 +58,8 @@ impl Unit {
             Self::Bytes => Some("bytes"),
             Self::BytesPerSecond => Some("bytes_per_second"),
             Self::JoulesPerKilogram => Some("joules_per_kilogram"),
+            Self::MetresPerSecond => Some("meters_per_second"),
+            Self::Degrees => Some("degrees"),
         }
     }
 

@@ -46,6 +46,8 @@ pub(crate) struct App {
     pub(crate) published: watch::Receiver<Arc<Published>>,
     pub(crate) commands: mpsc::Sender<Command>,
     pub(crate) attendance: Arc<Attendance>,
+    /// Budget of a tick, in place of the scene's (ms).
+    pub(crate) budget_ms: watch::Sender<Option<f32>>,
     pub(crate) proofs: Proofs,
     pub(crate) scene_name: String,
     /// What the scene models, by which methods, and what is planned.
@@ -58,6 +60,8 @@ pub(crate) struct App {
     pub(crate) journal: Arc<Health>,
     /// Sampler of the fields, for the HTTP API.
     pub(crate) fields: FieldSampler,
+    /// Steps of the world per second (Hz).
+    pub(crate) tick_hz: f32,
     /// Hosts and origins that requests may name.
     pub(crate) access: Access,
     /// Limits per remote address.

@@ -21,6 +21,7 @@ mod name;
 mod newest;
 mod origin;
 mod page_errors;
+mod plan;
 mod proofs;
 mod reader;
 mod routes;

@@ -3,7 +3,7 @@
 use super::app::App;
 use super::connection::Connection;
 use super::upgrade::upgrade;
-use super::{api, files, health, page_errors, scenes, security, session};
+use super::{api, files, health, page_errors, plan, scenes, security, session};
 use axum::extract::{Request, State};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
@@ -20,7 +20,8 @@ pub(crate) fn router(app: Arc<App>) -> Router {
         .route("/metrics", get(health::metrics))
         .route("/api/wind", get(api::wind).post(api::winds))
         .route("/api/bend", get(api::bend).post(api::bends))
-        .route("/api/plan", get(scenes::plan))
+        .route("/api/plan", get(plan::plan))
+        .route("/api/budget", post(plan::set_budget))
         .route("/api/scenes", get(scenes::list))
         .route("/api/scenes/{name}/picture", get(scenes::picture))
         .route("/api/scene", post(scenes::change))

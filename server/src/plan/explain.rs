@@ -2,6 +2,7 @@
 
 use super::fronts::{Fronts, FrontsInUse};
 use super::{Plan, Progress, is_demanded};
+use crate::detail::{Demands, WindDemand};
 use crate::scenes::{Explanation, ExplanationRow as Row, OpenScene, millis};
 use prairie_core::scene::{PlantCover, Scene, VehicleKind, WindMethod, WindTiling};
 
@@ -27,6 +28,23 @@ pub(super) fn explain_plan(scene: &OpenScene, plan: &Plan, used: &FrontsInUse) -
         not_planned: not_planned(own),
         sources: sources(plan, used),
         conflicts: plan.conflicts.clone(),
+        demands: is_demanded(own).then(|| demands(own, plan)),
+    }
+}
+
+/// What a run of the planned scene has to keep: its tolerances, and its budget or half a tick.
+fn demands(own: &Scene, plan: &Plan) -> Demands {
+    let (tolerances, [server_ms, ..]) = (own.accuracy.tolerances(), own.budget.limits());
+    let wind = plan.wind.as_ref().ok().zip(tolerances.wind).map(|(wind, tolerance)| WindDemand {
+        tolerance: tolerance as f32,
+        planned: wind.chosen.error as f32,
+        rms_m_per_s: wind.reference.1 as f32,
+    });
+    Demands {
+        wind,
+        bend_deg: tolerances.bend_deg.map(|deg| deg as f32),
+        planned_bend_deg: plan.bend.measured_deg.map_or(0.0, |_| plan.bend.error_deg() as f32),
+        server_ms: server_ms.map_or(500.0 / own.tick_hz, |ms| ms as f32),
     }
 }
 

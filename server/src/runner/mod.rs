@@ -2,6 +2,7 @@
 
 mod attendance;
 mod clock;
+mod controller;
 mod counter_log;
 mod published;
 mod recent_drops;
@@ -10,17 +11,19 @@ mod step_loop;
 
 pub use attendance::Attendance;
 pub use clock::CATCH_UP_STEPS;
+pub use controller::ControlReport;
 pub use published::{Published, Request};
 pub use recent_drops::RECENT;
 pub use simulation::Simulation;
 
+use crate::detail::Demands;
 use crate::snapshot::{Audience, PatchQuantiser};
 use crate::world::Command;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::thread::JoinHandle;
 use std::time::Duration;
-use step_loop::Loop;
+use step_loop::{Intake, Loop};
 use tokio::sync::{mpsc, watch};
 
 /// Capacity of the command queue.
@@ -37,6 +40,8 @@ pub struct Timing {
     pub threads: Option<usize>,
     /// Time without anybody after which a world [at rest](Simulation::is_at_rest) pauses; `None` if it never does.
     pub pause_after: Option<Duration>,
+    /// Errors and time that the detail of the world follows; `None` if the detail stays as it is.
+    pub demands: Option<Demands>,
 }
 
 impl Timing {
@@ -59,6 +64,7 @@ pub struct Runner {
     audience: watch::Sender<Audience>,
     state_request: Arc<AtomicBool>,
     attendance: Arc<Attendance>,
+    budget_ms: watch::Sender<Option<f32>>,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
@@ -82,11 +88,15 @@ impl Runner {
         let state_request = Arc::new(AtomicBool::new(false));
         let attendance = Arc::<Attendance>::default();
         let (audience, taken) = watch::channel(Audience::default());
+        let (budget_ms, set_budget_ms) = watch::channel(None);
         let (stopped, requested, attended) = (stop.clone(), state_request.clone(), attendance.clone());
         let thread = std::thread::Builder::new().name("world".to_owned()).spawn(move || {
-            pool.install(|| Loop::new(simulation, quantiser, timing, inbox, taken, sender).run(&stopped, &requested, &attended));
+            pool.install(|| {
+                Loop::new(simulation, quantiser, timing, Intake { inbox, audience: taken, budget_ms: set_budget_ms }, sender)
+                    .run(&stopped, &requested, &attended)
+            });
         })?;
-        Ok(Self { commands, published, audience, state_request, attendance, stop, thread: Some(thread) })
+        Ok(Self { commands, published, audience, state_request, attendance, budget_ms, stop, thread: Some(thread) })
     }
 
     /// Queue of commands to the world. It is bounded: use `try_send` for commands that may be lost.
@@ -114,6 +124,11 @@ impl Runner {
         self.attendance.clone()
     }
 
+    /// The time of a tick on the server (ms) that replaces the scene's budget. No effect without [demands](Timing::demands).
+    pub fn budget_ms(&self) -> watch::Sender<Option<f32>> {
+        self.budget_ms.clone()
+    }
+
     /// Stops after the present step and waits for the thread. Returns whether it ended without a panic.
     pub fn stop(mut self) -> bool {
         self.stop.store(true, Relaxed);
@@ -133,7 +148,7 @@ mod tests {
 
     #[test]
     fn publish_rates_divide_the_step_rate() {
-        let timing = |tick_hz, publish_hz| Timing { tick_hz, publish_hz, threads: None, pause_after: None };
+        let timing = |tick_hz, publish_hz| Timing { tick_hz, publish_hz, threads: None, pause_after: None, demands: None };
         assert_eq!(timing(60.0, 20.0).steps_per_publish(), 3);
         assert_eq!(timing(60.0, 25.0).published_hz(), 30.0);
         assert_eq!(timing(10.0, 60.0).steps_per_publish(), 1);

@@ -1,5 +1,6 @@
 //! What the runner publishes.
 
+use super::controller::ControlReport;
 use crate::histogram::Histogram;
 use crate::snapshot::Snapshot;
 use prairie_core::grass::BendState;
@@ -35,6 +36,8 @@ pub struct Published {
     pub bend_state: Option<Arc<BendState>>,
     /// Whether the world is paused, because nobody is there and only the wind would change.
     pub is_paused: bool,
+    /// State of the controller of the detail; `None` where the detail stays as it is.
+    pub control: Option<ControlReport>,
     /// Time of the publication.
     pub at: Instant,
 }
@@ -51,6 +54,7 @@ impl Published {
             step_secs: step_histogram(),
             bend_state: None,
             is_paused: false,
+            control: None,
             at: Instant::now(),
         }
     }

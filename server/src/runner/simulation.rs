@@ -1,5 +1,6 @@
 //! What the runner steps.
 
+use crate::detail::DetailRange;
 use crate::journal::Health;
 use crate::snapshot::{PatchQuantiser, Snapshot};
 use crate::world::{Command, World};
@@ -43,6 +44,12 @@ pub trait Simulation: Send + 'static {
     fn first_client(&self) -> u32 {
         1
     }
+    /// Estimates the errors of the world's steps from now on.
+    fn watch_errors(&mut self) {}
+    /// What the detail can be adapted to; `None` if it cannot.
+    fn detail_range(&self) -> Option<DetailRange> {
+        None
+    }
     /// State of the journal's files, for the metrics; `None` without memory.
     fn journal_health(&self) -> Option<Arc<Health>> {
         None
@@ -80,5 +87,13 @@ impl Simulation for World {
 
     fn is_at_rest(&self) -> bool {
         Self::is_at_rest(self)
+    }
+
+    fn watch_errors(&mut self) {
+        Self::watch_errors(self);
+    }
+
+    fn detail_range(&self) -> Option<DetailRange> {
+        Some(Self::detail_range(self))
     }
 }

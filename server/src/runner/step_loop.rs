@@ -1,11 +1,12 @@
 //! The loop of the simulation thread: steps in real time, publications, and pauses.
 
 use super::clock::{CATCH_UP_STEPS, Clock};
+use super::controller::Controller;
 use super::counter_log::CounterLog;
 use super::published::step_histogram;
 use super::{Attendance, Published, Request, Simulation, Timing};
 use crate::histogram::Histogram;
-use crate::snapshot::{Audience, PatchQuantiser};
+use crate::snapshot::{Audience, Diagnostics, PatchQuantiser};
 use crate::world::Command;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -22,14 +23,23 @@ const PAUSED_SLEEP: Duration = Duration::from_millis(100);
 /// Time between the publications of a paused world, which show that it is not stuck.
 const PAUSED_PUBLISH: Duration = Duration::from_secs(1);
 
+/// What the loop receives from outside.
+pub(super) struct Intake {
+    pub(super) inbox: mpsc::Receiver<Command>,
+    pub(super) audience: watch::Receiver<Audience>,
+    pub(super) budget_ms: watch::Receiver<Option<f32>>,
+}
+
 /// The world with its clock and its channels.
 pub(super) struct Loop<S> {
     simulation: S,
     quantiser: PatchQuantiser,
-    inbox: mpsc::Receiver<Command>,
-    audience: watch::Receiver<Audience>,
-    /// Commands that came during a pause.
+    intake: Intake,
+    /// Commands that came during a pause, and decisions about the detail.
     waiting: Vec<Command>,
+    controller: Option<Controller>,
+    /// Time of the steps and publications since the last decision.
+    busy: Duration,
     sender: watch::Sender<Arc<Published>>,
     clock: Clock,
     steps_per_publish: u64,
@@ -46,21 +56,26 @@ pub(super) struct Loop<S> {
 
 impl<S: Simulation> Loop<S> {
     pub(super) fn new(
-        simulation: S,
+        mut simulation: S,
         quantiser: PatchQuantiser,
         timing: Timing,
-        inbox: mpsc::Receiver<Command>,
-        audience: watch::Receiver<Audience>,
+        intake: Intake,
         sender: watch::Sender<Arc<Published>>,
     ) -> Self {
-        let before = simulation.publish(&mut PatchQuantiser::default()).diagnostics;
+        let published = simulation.publish(&mut PatchQuantiser::default());
+        let (before, newest) = (published.diagnostics, published.decisions.last().copied());
+        let controller = timing.demands.zip(simulation.detail_range());
+        if controller.is_some() {
+            simulation.watch_errors();
+        }
         Self {
             tick: simulation.tick(),
             simulation,
             quantiser,
-            inbox,
-            audience,
+            intake,
             waiting: Vec::new(),
+            controller: controller.map(|(demands, range)| Controller::new(demands, range, newest)),
+            busy: Duration::ZERO,
             sender,
             clock: Clock::new(f64::from(timing.tick_hz)),
             steps_per_publish: timing.steps_per_publish(),
@@ -113,7 +128,7 @@ impl<S: Simulation> Loop<S> {
 
     /// Takes the commands that have come, except for empty lists of cameras.
     fn receive(&mut self) {
-        while let Ok(command) = self.inbox.try_recv() {
+        while let Ok(command) = self.intake.inbox.try_recv() {
             if command != Command::Cameras(Vec::new()) {
                 self.waiting.push(command);
             }
@@ -125,23 +140,29 @@ impl<S: Simulation> Loop<S> {
         if !self.simulation.is_idle() {
             return 1;
         }
-        let in_a_sleep = (IDLE_SLEEP_SECS * self.clock.tick_hz) as u64;
-        let to_publish = self.steps_per_publish - self.tick % self.steps_per_publish;
+        let (in_a_sleep, per_publish) = ((IDLE_SLEEP_SECS * self.clock.tick_hz) as u64, self.steps_per_publish());
+        let to_publish = per_publish - self.tick % per_publish;
         to_publish.min(in_a_sleep).clamp(1, CATCH_UP_STEPS / 2)
     }
 
     /// Steps until the next snapshot, 0 when it is due now.
     fn steps_to_publish(&self) -> u64 {
-        (self.steps_per_publish - self.tick % self.steps_per_publish) % self.steps_per_publish
+        let per_publish = self.steps_per_publish();
+        (per_publish - self.tick % per_publish) % per_publish
+    }
+
+    fn steps_per_publish(&self) -> u64 {
+        self.steps_per_publish * self.controller.as_ref().map_or(1, |controller| controller.publish_divisor().into())
     }
 
     fn step(&mut self, state_request: &AtomicBool) {
         let mut commands = std::mem::take(&mut self.waiting);
-        commands.extend(std::iter::from_fn(|| self.inbox.try_recv().ok()));
+        commands.extend(std::iter::from_fn(|| self.intake.inbox.try_recv().ok()));
         let begun = Instant::now();
         self.simulation.step(&commands);
         let duration = begun.elapsed();
         self.step_times.push(duration);
+        self.busy += duration;
         self.step_secs.observe(duration.as_secs_f64());
         self.tick += 1;
         self.note_requests(&commands);
@@ -165,18 +186,19 @@ impl<S: Simulation> Loop<S> {
                     let object = self.simulation.object_of(client);
                     self.requests.extend(object.map(|object| (client, Request { tick: self.tick, object: Some(object) })));
                 }
-                Command::Drive { .. } | Command::Cameras(_) | Command::Join { .. } => {}
+                Command::Drive { .. } | Command::Cameras(_) | Command::Join { .. } | Command::Adapt(_) => {}
             }
         }
     }
 
     fn publish(&mut self, with_bend_state: bool) {
-        self.quantiser.set_audience(self.audience.borrow().clone());
+        let begun = Instant::now();
+        self.quantiser.set_audience(self.intake.audience.borrow().clone());
         let mut snapshot = self.simulation.publish(&mut self.quantiser);
         let total: Duration = self.step_times.iter().sum();
         snapshot.diagnostics.step_secs = total.as_secs_f32() / self.step_times.len() as f32;
         snapshot.diagnostics.step_max_secs = self.step_times.iter().max().map_or(0.0, Duration::as_secs_f32);
-        self.step_times.clear();
+        let steps = std::mem::take(&mut self.step_times).len();
         let resets = snapshot.diagnostics.wind_resets;
         if resets > self.sender.borrow().snapshot.diagnostics.wind_resets {
             tracing::warn!(resets, "the wind solver failed and restarted from the mean wind");
@@ -189,7 +211,22 @@ impl<S: Simulation> Loop<S> {
             tracing::warn!(patches, "grass moved faster than the scheme can follow, or was NaN or infinite, and was put to rest");
         }
         let bend_state = with_bend_state.then(|| self.simulation.bend_state()).flatten().map(Arc::new);
+        self.busy += begun.elapsed();
+        self.adapt(steps, &snapshot.diagnostics);
         self.send(Published { bend_state, ..Published::new(snapshot) });
+    }
+
+    /// Adapts the detail of the world, which took so many steps since the last time.
+    fn adapt(&mut self, steps: usize, diagnostics: &Diagnostics) {
+        let busy_ms = std::mem::take(&mut self.busy).as_secs_f64() * 1e3 / steps as f64;
+        let Some(controller) = &mut self.controller else { return };
+        if let Some(budget_ms) = *self.intake.budget_ms.borrow() {
+            controller.set_budget(budget_ms);
+        }
+        if let Some(decision) = controller.decide(self.start.elapsed(), self.tick, busy_ms, diagnostics) {
+            tracing::info!(tick = self.tick, "{}: {}", decision.reason, decision.detail);
+            self.waiting.push(Command::Adapt(decision));
+        }
     }
 
     /// Publishes a state, with the information from the runner.
@@ -200,6 +237,7 @@ impl<S: Simulation> Loop<S> {
             dropped_secs: self.clock.dropped_secs(),
             dropped_recently_secs: self.clock.dropped_recently_secs(self.start.elapsed()),
             step_secs: self.step_secs.clone(),
+            control: self.controller.as_ref().map(|controller| controller.report(&state.snapshot.diagnostics)),
             ..state
         };
         self.sender.send_replace(Arc::new(published));

@@ -1,5 +1,6 @@
 //! Explanation of a scene's settings: what is modelled, by which method, with which error, at which cost, and why.
 
+use crate::detail::Demands;
 use serde::Serialize;
 use std::fmt;
 
@@ -20,6 +21,9 @@ pub struct Explanation {
     pub conflicts: Vec<String>,
     /// How errors and costs were found.
     pub sources: Vec<String>,
+    /// What the run has to keep; `None` where the scene demands nothing that is planned.
+    #[serde(skip)]
+    pub demands: Option<Demands>,
 }
 
 /// A part of the scene.

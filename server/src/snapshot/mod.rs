@@ -7,6 +7,7 @@ mod broken_plants;
 pub use broken_plants::BrokenPlants;
 pub use prairie_core::grass::{Audience, BentPatches, PatchCodes, PatchQuantiser};
 
+use crate::detail::Decision;
 use prairie_core::grass::StepRecord;
 use prairie_core::wire::{AppliedInput, Ghost, ObjectPose, Standing, TurbulenceState};
 use std::collections::BTreeMap;
@@ -39,6 +40,8 @@ pub struct Snapshot {
     pub ghost: Option<Arc<Ghost>>,
     /// The newest steps of the grass, oldest first.
     pub steps: Vec<Arc<StepRecord>>,
+    /// The newest decisions about the detail, oldest first.
+    pub decisions: Vec<Decision>,
     /// Step diagnostics.
     pub diagnostics: Diagnostics,
 }
@@ -99,4 +102,20 @@ pub struct Diagnostics {
     pub substeps: u32,
     /// Largest Courant number of a sub-step of the bend field.
     pub courant: f32,
+    /// Duration of a step of the wind's solver (s).
+    pub wind_step_secs: f32,
+    /// Estimated error of the wind that the grass feels, from the solver's time step, over the two seconds of a pilot run (m/s); 0 where nobody watches it.
+    pub wind_step_error_m_per_s: f32,
+    /// The same of steps twice as long.
+    pub wind_doubled_error_m_per_s: f32,
+    /// Number of estimates of these errors.
+    pub error_samples: u64,
+    /// Estimated error of the bending angle from the time step, over the time in which waves decay (degrees); 0 where nobody watches it.
+    pub bend_step_error_deg: f32,
+    /// Most awake patches at present.
+    pub awake_limit: u32,
+    /// How much gives way to the load at present: a place in [`LADDER`](crate::detail::LADDER).
+    pub degradation: u32,
+    /// Number of decisions about the detail.
+    pub decisions: u64,
 }

@@ -12,7 +12,10 @@ use bytes::Bytes;
 use prairie_core::grid::{PatchIndex, PatchLayout};
 use prairie_core::wire::{self, AppliedInput, PATCH_MEMORY, ServerMessage};
 use std::collections::HashMap;
-use std::time::Instant;
+use std::time::{Duration, Instant};
+
+/// Time between frames that say nothing new, which keep the client's clock: longer than what its clock takes for the interval of the publications.
+const QUIET_PERIOD: Duration = Duration::from_millis(480);
 
 /// Limits on the data sent to one client.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +44,8 @@ pub struct Publication<'a> {
     pub now: Instant,
     /// The encoded poses message.
     pub poses: Bytes,
+    /// Version of the poses: another one when any has changed.
+    pub poses_version: u64,
     /// Messages that all clients get when they change: roster, race, and ghost.
     pub announced: [Announced; ANNOUNCEMENTS],
     /// The newest steps.
@@ -68,6 +73,8 @@ pub struct ClientState {
     following: Following,
     patch_messages: u64,
     held_wind: Option<u32>,
+    /// Version of the poses that were sent last, and when.
+    sent_poses: Option<(u64, Instant)>,
     /// Version of each announcement that was sent.
     held_announced: [u64; ANNOUNCEMENTS],
     /// The newest input of the client's vehicle that was reported.
@@ -90,6 +97,7 @@ impl ClientState {
             following: Following::default(),
             patch_messages: 0,
             held_wind: None,
+            sent_poses: None,
             held_announced: [0; ANNOUNCEMENTS],
             reported: None,
             sent_broken: 0,
@@ -98,8 +106,8 @@ impl ClientState {
         }
     }
 
-    /// Sends the newest state to a client; returns the bytes of the frame, 0 if there is nothing to say to a client with a replica, or `None` if too many frames
-    /// are in flight. Poses are always sent; broken plants, wind, patches (nearest first) and the parts of a replica's state as far as the budget allows, the
+    /// Sends the newest state to a client; returns the bytes of the frame, 0 if there is nothing to say, or `None` if too many frames
+    /// are in flight. Poses are always sent, the same ones twice a second; broken plants, wind, patches (nearest first) and the parts of a replica's state as far as the budget allows, the
     /// rest with a later frame. A client with a replica gets all steps instead of poses and patches. `extra` is a message for this client alone.
     pub fn send_frame(
         &mut self,
@@ -138,6 +146,9 @@ impl ClientState {
             self.patches(publication, encoder)
         };
         messages.extend(grass);
+        if !has_replica && messages.len() == 1 && self.is_quiet(publication) {
+            return Some(0);
+        }
         let number = self.frame + 1;
         let end = ServerMessage::FrameEnd { frame: number, tick: snapshot.tick, time_secs: snapshot.time_secs };
         let end: Bytes = wire::encode(&end).into();
@@ -152,12 +163,19 @@ impl ClientState {
         }
         self.following.note_sent(publication.steps, publication.now);
         self.frame = number;
+        self.sent_poses = Some((publication.poses_version, publication.now));
         self.held_announced = publication.announced.each_ref().map(|announced| announced.version);
         self.reported = applied;
         self.sent_broken = broken.map_or(self.sent_broken, |(count, _)| count);
         self.held_wind = wind.or(self.held_wind);
         self.hold(patches);
         Some(bytes)
+    }
+
+    /// Whether the poses are those that were sent last, a moment ago.
+    fn is_quiet(&self, publication: &Publication<'_>) -> bool {
+        let is_recent = |at: &Instant| publication.now.duration_since(*at) < QUIET_PERIOD;
+        self.sent_poses.as_ref().is_some_and(|(version, at)| *version == publication.poses_version && is_recent(at))
     }
 
     /// Messages of patches, wind and the parts of a replica's state, as far as the budget allows; the number of the wind frame, and the patches sent.

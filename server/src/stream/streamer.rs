@@ -12,7 +12,7 @@ use crate::snapshot::{Audience, Snapshot};
 use crate::world::{Camera, Command};
 use bytes::Bytes;
 use prairie_core::grid::PatchLayout;
-use prairie_core::wire::{self, Ghost, Peer, Refusal, ServerMessage, Standing};
+use prairie_core::wire::{self, Ghost, ObjectPose, Peer, Refusal, ServerMessage, Standing};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -89,6 +89,8 @@ pub struct Streamer {
     ghost: Announcement<Option<Arc<Ghost>>>,
     counters: Arc<Counters>,
     steps: StepLog,
+    /// The newest poses, and how often they have changed.
+    poses: (Vec<ObjectPose>, u64),
     /// Set to request the state of the grass with the next publication.
     state_request: Arc<AtomicBool>,
     /// Time of the newest request.
@@ -110,6 +112,7 @@ impl Streamer {
             ghost: Announcement::default(),
             counters: Arc::default(),
             steps: StepLog::new(publish_hz, limits.bytes_per_s),
+            poses: (Vec::new(), 0),
             state_request: Arc::default(),
             requested_at: None,
             difference_warning: LogLimit::default(),
@@ -136,11 +139,16 @@ impl Streamer {
             self.steps.set_state(state, self.encoder.wind(snapshot, None));
         }
         let announced = self.announced(published, clients, now);
+        if self.poses.0 != snapshot.objects {
+            self.poses.0.clone_from(&snapshot.objects);
+            self.poses.1 += 1;
+        }
         let publication = Publication {
             snapshot: &published.snapshot,
             layout: &self.layout,
             now,
             poses: Encoder::poses(&published.snapshot),
+            poses_version: self.poses.1,
             announced,
             steps: &self.steps,
         };

@@ -44,8 +44,15 @@ impl Stage {
     pub fn changed(name_or_path: &str, change: impl FnOnce(&mut Scene)) -> Result<Self> {
         let mut loaded = scenes::load(name_or_path)?;
         change(&mut loaded.scene);
-        let world = World::new(&loaded.scene, loaded.maps())?;
-        Self::of(&loaded, world, BTreeMap::new())
+        Self::new(&loaded)
+    }
+
+    /// The world of a loaded scene at its start.
+    ///
+    /// # Errors
+    /// When the scene is invalid.
+    pub fn new(loaded: &LoadedScene) -> Result<Self> {
+        Self::of(loaded, World::new(&loaded.scene, loaded.maps())?, BTreeMap::new())
     }
 
     /// Plays a recording of a world of this scene, step by step; after its end nobody drives.

@@ -15,6 +15,8 @@ use serde::{Deserialize, Serialize};
 pub struct WeatherState {
     air: AirState<f32>,
     resets: u64,
+    /// Ticks per step of the solver, at present and from the next common tick on.
+    ticks_per_step: [u64; 2],
     turbulence: TurbulenceState,
     /// The newest frame: tick, gusts, codes.
     frame: (u64, TurbulenceState, Vec<i16>),
@@ -39,6 +41,14 @@ pub enum WeatherRestoreError {
         /// Number of codes of the scene's wind.
         needed: usize,
     },
+    /// The scene's wind cannot be stepped so rarely or often.
+    #[error("its wind is stepped every {ticks} ticks; allowed: {allowed:?}")]
+    Interval {
+        /// Ticks per step.
+        ticks: u64,
+        /// Allowed ticks per step.
+        allowed: Vec<u64>,
+    },
 }
 
 impl Weather {
@@ -48,6 +58,7 @@ impl Weather {
             self.report;
         self.air.save_into(&mut state.air);
         (state.resets, state.turbulence) = (self.resets, self.turbulence);
+        state.ticks_per_step = [self.ticks_per_step, self.wanted_ticks];
         (state.frame.0, state.frame.1) = (self.frame.tick, self.frame.turbulence);
         state.frame.2.clone_from(&self.frame.codes);
         state.report = (courant, divergence_rms_rel, kinetic_energy_m2_per_s2, substeps, pressure_residual, pressure_sweeps);
@@ -67,6 +78,14 @@ impl Weather {
         if codes.len() != weather.frame.codes.len() {
             return Err(WeatherRestoreError::Frame { found: codes.len(), needed: weather.frame.codes.len() });
         }
+        if let Some(&ticks) = state.ticks_per_step.iter().find(|ticks| !weather.allowed_ticks.contains(ticks)) {
+            return Err(WeatherRestoreError::Interval { ticks, allowed: weather.allowed_ticks });
+        }
+        let [present, wanted] = state.ticks_per_step;
+        if present != weather.ticks_per_step {
+            weather.set_interval(present);
+        }
+        weather.wanted_ticks = wanted;
         weather.hold(WindFrame { tick, cells: weather.frame.cells, turbulence, codes: codes.clone() });
         Ok(weather)
     }

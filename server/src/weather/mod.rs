@@ -8,6 +8,7 @@ mod fixed_solids;
 pub(crate) mod pilot;
 mod rest;
 mod settings;
+mod step_halving;
 mod vehicles;
 
 use crate::checksum::Checksum;
@@ -30,10 +31,15 @@ use prairie_wind::{Air, Body, Config, ConfigError, Jet, Method, Real, SolidError
 use rest::Rest;
 use settings::settings;
 use std::sync::Arc;
+pub use step_halving::StepErrors;
+use step_halving::StepHalving;
 use vehicles::Vehicles;
 
 /// Rate at which the wind is released to the rest of the world and to clients (Hz), rounded to whole solver steps.
 const FRAME_HZ: f32 = 6.0;
+/// Longest step to which a calm wind, or a loaded server, may stretch the scene's own (s), and by which factor.
+const LONGEST_STEP_SECS: f64 = 0.25;
+const LARGEST_STRETCH: u64 = 8;
 /// Cell steps of the solver's warm-up, so that there are gusts from the start; and the largest number of warm-up steps.
 const WARM_UP_CELL_STEPS: usize = 1 << 20;
 const WARM_UP_STEPS: usize = 120;
@@ -46,6 +52,12 @@ pub struct Weather {
     config: Config,
     tiling: WindTiling,
     ticks_per_step: u64,
+    /// Ticks per step from the next tick on that both have in common.
+    wanted_ticks: u64,
+    /// Allowed ticks per step, ascending, and the scene's own.
+    allowed_ticks: Vec<u64>,
+    own_ticks: u64,
+    dt_secs: f32,
     /// Ticks per frame.
     ticks_per_frame: u64,
     step_secs: f64,
@@ -61,6 +73,8 @@ pub struct Weather {
     turbulence: TurbulenceState,
     field: WindField,
     frame: Arc<WindFrame>,
+    /// Only where somebody asks for the error of the step.
+    halving: Option<Box<StepHalving>>,
 }
 
 /// Reason why the wind of a scene cannot be simulated.
@@ -137,9 +151,14 @@ impl Weather {
             resets: 0,
             air,
             method,
+            allowed_ticks: allowed_ticks(method, &config, ticks_per_step, scene.dt_secs()),
+            own_ticks: ticks_per_step,
+            wanted_ticks: ticks_per_step,
+            dt_secs: scene.dt_secs(),
+            halving: None,
             config,
             ticks_per_step,
-            ticks_per_frame: frame_interval(scene, ticks_per_step),
+            ticks_per_frame: frame_interval(scene.tick_hz, ticks_per_step),
             step_secs,
             report,
             terrain,
@@ -169,6 +188,52 @@ impl Weather {
         if tick.is_multiple_of(self.ticks_per_frame) {
             self.release(tick);
         }
+        if self.wanted_ticks != self.ticks_per_step && tick.is_multiple_of(self.wanted_ticks) {
+            self.set_interval(self.wanted_ticks);
+        }
+    }
+
+    /// Steps the solver every so many ticks, from the next tick on at which the present step ends and such a step begins. Intervals that are not
+    /// [allowed](Self::allowed_ticks) change nothing.
+    pub fn step_every(&mut self, ticks: u64) {
+        if self.allowed_ticks.contains(&ticks) {
+            self.wanted_ticks = ticks;
+        }
+    }
+
+    fn set_interval(&mut self, ticks: u64) {
+        let before = self.ticks_per_step;
+        (self.ticks_per_step, self.step_secs) = (ticks, (ticks as f32 * self.dt_secs).into());
+        self.ticks_per_frame = frame_interval(1.0 / self.dt_secs, ticks);
+        if let Some(halving) = &mut self.halving {
+            halving.change_step(ticks as f64 / before as f64);
+        }
+    }
+
+    /// Allowed ticks per step of the solver, ascending.
+    pub fn allowed_ticks(&self) -> &[u64] {
+        &self.allowed_ticks
+    }
+
+    /// Ticks per step of the solver as the scene has it.
+    pub fn own_ticks(&self) -> u64 {
+        self.own_ticks
+    }
+
+    /// Duration of a step of the solver (s).
+    pub fn step_secs(&self) -> f64 {
+        self.step_secs
+    }
+
+    /// Estimates the error of the time step from now on, which costs one or two more steps a second.
+    pub fn watch_errors(&mut self, height: &HeightMap) {
+        // A world whose air cannot be made twice has no air.
+        self.halving = StepHalving::new(self, height).ok().map(Box::new);
+    }
+
+    /// Estimated errors of the time step; none without [`watch_errors`](Self::watch_errors).
+    pub fn step_errors(&self) -> StepErrors {
+        self.halving.as_ref().map(|halving| halving.errors()).unwrap_or_default()
     }
 
     /// Whether the air is at rest and nothing drives it. Air that is nearly at rest comes to rest.
@@ -197,7 +262,12 @@ impl Weather {
         }
         self.air.set_bodies(&self.bodies).expect("bodies that may not be set are left out");
         // The intensities follow the world's time, so that they neither run during the warm-up nor start again after a failed step.
-        self.air.set_intensity_secs(self.step_secs * ((tick / self.ticks_per_step) as f64 - 1.0));
+        let intensity_secs = self.step_secs * ((tick / self.ticks_per_step) as f64 - 1.0);
+        self.air.set_intensity_secs(intensity_secs);
+        let mut halving = self.halving.take();
+        if let Some(halving) = &mut halving {
+            halving.begin(self, tick, intensity_secs, jets);
+        }
         match self.air.step(self.step_secs, jets) {
             Ok(report) => self.report = report,
             // The state is invalid: the air restarts from the mean wind.
@@ -207,6 +277,10 @@ impl Weather {
                 self.resets += 1;
             }
         }
+        if let Some(halving) = &mut halving {
+            halving.end(self);
+        }
+        self.halving = halving;
         let velocities = self.velocities();
         self.carrier.advance(&mut self.turbulence, &velocities, self.step_secs);
     }
@@ -305,8 +379,21 @@ fn step_interval(scene: &Scene) -> (u64, f64) {
 }
 
 /// Ticks per frame of a solver whose step takes `ticks_per_step`.
-fn frame_interval(scene: &Scene, ticks_per_step: u64) -> u64 {
-    ticks_per_step * (scene.tick_hz / (ticks_per_step as f32 * FRAME_HZ)).round().max(1.0) as u64
+fn frame_interval(tick_hz: f32, ticks_per_step: u64) -> u64 {
+    ticks_per_step * (tick_hz / (ticks_per_step as f32 * FRAME_HZ)).round().max(1.0) as u64
+}
+
+/// Intervals to which the steps of a solver may be shortened or stretched: the scene's own one times powers of two.
+fn allowed_ticks(method: Method, config: &Config, own_ticks: u64, dt_secs: f32) -> Vec<u64> {
+    let shorter = std::iter::successors(Some(own_ticks), |ticks| ticks.is_multiple_of(2).then_some(ticks / 2)).skip(1);
+    let longer = std::iter::successors(Some(2 * own_ticks), |ticks| Some(2 * ticks)).take_while(|&ticks| {
+        let step_secs = ticks as f64 * f64::from(dt_secs);
+        let is_stable = Air::<f32>::check_step(method, config, step_secs).is_ok();
+        ticks <= LARGEST_STRETCH * own_ticks && step_secs <= LONGEST_STEP_SECS && is_stable
+    });
+    let mut allowed: Vec<u64> = shorter.chain([own_ticks]).chain(longer).collect();
+    allowed.sort_unstable();
+    allowed
 }
 
 /// Steps of the warm-up, and their duration (s): those of the scene's duration, or [`WARM_UP_STEPS`] of the solver, fewer of many cells.

@@ -87,7 +87,7 @@ fn turbulence_below_m(scene: &Scene) -> f32 {
 /// Ticks per step and per frame of a scene's wind.
 pub(crate) fn intervals(scene: &Scene) -> [u64; 2] {
     let (ticks, _) = step_interval(scene);
-    [ticks, frame_interval(scene, ticks)]
+    [ticks, frame_interval(scene.tick_hz, ticks)]
 }
 
 /// A scene with the settings of the reference, on cells `factor` times as fine along X and Z.

@@ -8,6 +8,7 @@ use prairie_core::scene::{VehicleKind, WindAdvection, WindBoundary, WindDiffusio
 use prairie_core::terrain::grey_png;
 
 mod intensity;
+mod interval;
 mod solids;
 
 fn meadow() -> (Scene, Maps) {

@@ -3,6 +3,7 @@
 use super::departed::Departed;
 use super::{Camera, Maps, World};
 use crate::bend::pool::Pool;
+use crate::detail::{Decision, Decisions};
 use crate::objects::{ObjectsError, ObjectsState};
 use crate::race::RaceState;
 use crate::settings_error::SettingsError;
@@ -26,6 +27,8 @@ pub struct WorldState {
     weather: WeatherState,
     bend: BendState,
     broken: BrokenPlants,
+    /// The newest decision about the detail, and the number of decisions.
+    decisions: (Option<Decision>, u64),
 }
 
 /// Reason why a world cannot be restored.
@@ -92,6 +95,7 @@ impl World {
         let (weather, bend) = (&self.weather, &self.bend);
         rayon::join(|| weather.save_into(&mut state.weather), || bend.save_into(&mut state.bend, &Pool));
         state.broken.clone_from(self.plants.broken());
+        state.decisions = (self.decisions.newest(), self.decisions.count());
     }
 
     /// The world of a scene in a state that it had before. It continues with the same bits as the original, on any number of threads.
@@ -111,6 +115,11 @@ impl World {
         if !world.plants.restore(state.broken) {
             return Err(RestoreError::Plants);
         }
+        let (newest, count) = state.decisions;
+        if let Some(decision) = newest {
+            world.bend.limit_awake(decision.detail.awake_limit);
+        }
+        world.decisions = Decisions::restored(newest, count);
         Ok(world)
     }
 }

@@ -1,5 +1,6 @@
-//! Commands from clients to the world.
+//! Commands from clients, and from the server itself, to the world.
 
+use crate::detail::Decision;
 use prairie_core::grass::Camera;
 use prairie_core::scene::VehicleKind;
 use prairie_core::wire::Drive;
@@ -47,4 +48,6 @@ pub enum Command {
         /// Number of the client.
         client: u32,
     },
+    /// The server changes the detail. What the scene does not allow is left out.
+    Adapt(Decision),
 }

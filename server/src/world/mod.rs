@@ -10,14 +10,16 @@ pub use departed::KEPT_SECS;
 pub use prairie_core::grass::Camera;
 
 use crate::bend;
+use crate::bend::halving::BendHalving;
 use crate::bend::pool::Pool;
 use crate::checksum::Checksum;
+use crate::detail::{Decision, Decisions, Detail, DetailRange};
 use crate::objects::{Environment, Objects};
 use crate::plants::PlantDamage;
 use crate::race::Race;
 use crate::settings_error::SettingsError;
 use crate::snapshot::{Diagnostics, PatchQuantiser, Snapshot};
-use crate::weather::Weather;
+use crate::weather::{Weather, pilot};
 use departed::Departed;
 use prairie_core::bend::Scheme;
 use prairie_core::body::Motion;
@@ -68,6 +70,9 @@ pub struct World {
     newest_client: u32,
     /// The newest steps of the grass, oldest first.
     steps: VecDeque<Arc<StepRecord>>,
+    decisions: Decisions,
+    /// Only where somebody asks for the error of the bend field's step.
+    halving: Option<BendHalving>,
 }
 
 impl World {
@@ -103,6 +108,8 @@ impl World {
             departed: Departed::default(),
             newest_client: 0,
             steps: VecDeque::new(),
+            decisions: Decisions::default(),
+            halving: None,
         })
     }
 
@@ -121,6 +128,9 @@ impl World {
         self.race.step(self.tick, self.objects.driven(&motions));
         self.weather.step(self.tick, &motions, &self.height, self.bend.field());
         self.bend.step(self.dt_secs, &motions, &self.cameras, self.weather.field(), &Pool);
+        if let Some(halving) = &mut self.halving {
+            halving.sample(self.tick, self.dt_secs, &self.bend);
+        }
         self.plants.step(self.tick, self.dt_secs, &self.bend, &self.weather);
         self.record_step(&motions);
     }
@@ -156,6 +166,7 @@ impl World {
             standings: self.race.standings(),
             ghost: self.race.ghost(),
             steps: self.steps.iter().cloned().collect(),
+            decisions: self.decisions.shown(),
             diagnostics: self.diagnostics(),
         }
     }
@@ -282,7 +293,28 @@ impl World {
                 }
             }
             Command::Return { client } => self.departed.forget(*client),
+            Command::Adapt(decision) => self.adapt(*decision),
         }
+    }
+
+    /// Changes the detail.
+    fn adapt(&mut self, decision: Decision) {
+        let Detail { wind_ticks, awake_limit, .. } = decision.detail;
+        self.weather.step_every(wind_ticks.into());
+        self.bend.limit_awake(awake_limit);
+        self.decisions.note(decision);
+    }
+
+    /// What the detail can be adapted to.
+    pub fn detail_range(&self) -> DetailRange {
+        let own = Detail { wind_ticks: self.weather.own_ticks() as u32, awake_limit: self.bend.awake_limit(), publish_divisor: 1 };
+        DetailRange { wind_ticks: self.weather.allowed_ticks().iter().map(|ticks| *ticks as u32).collect(), own, tick_secs: self.dt_secs }
+    }
+
+    /// Estimates the errors of the time steps of wind and bend field from now on, for the [diagnostics](Diagnostics).
+    pub fn watch_errors(&mut self) {
+        self.weather.watch_errors(&self.height);
+        self.halving = (self.bend.scheme() != Scheme::Modal).then(BendHalving::default);
     }
 
     /// Removes the vehicle of a client that does not return, and its times.
@@ -307,7 +339,8 @@ impl World {
     }
 
     fn diagnostics(&self) -> Diagnostics {
-        let (wind, bend) = (self.weather.report(), self.bend.report());
+        let (wind, bend, wind_step) = (self.weather.report(), self.bend.report(), self.weather.step_errors());
+        let within_horizon = |m_per_s2: Option<f64>| m_per_s2.map_or(0.0, |rate| (rate * pilot::HORIZON_SECS) as f32);
         Diagnostics {
             step_secs: 0.0,
             step_max_secs: 0.0,
@@ -323,6 +356,14 @@ impl World {
             wind_resets: self.weather.resets(),
             substeps: bend.substeps,
             courant: bend.courant_fraction,
+            wind_step_secs: self.weather.step_secs() as f32,
+            wind_step_error_m_per_s: within_horizon(wind_step.present_m_per_s2),
+            wind_doubled_error_m_per_s: within_horizon(wind_step.doubled_m_per_s2),
+            error_samples: wind_step.samples,
+            bend_step_error_deg: self.halving.as_ref().map_or(0.0, |halving| halving.error_rad().to_degrees()),
+            awake_limit: self.decisions.newest().map_or(self.bend.awake_limit(), |newest| newest.detail.awake_limit),
+            degradation: self.decisions.newest().map_or(0, |newest| newest.level.into()),
+            decisions: self.decisions.count(),
         }
     }
 }

@@ -5,6 +5,7 @@ mod common;
 
 #[cfg(feature = "acme")]
 mod acme;
+mod adaptation;
 mod addresses;
 mod charts;
 mod drawing;

@@ -22,7 +22,7 @@ async fn start(scene: &str, folder: &std::path::Path, pages_change_scene: bool) 
 }
 
 /// Status and JSON body of a request.
-async fn ask(server: &Server, request: &str, body: &str) -> (u16, Value) {
+pub(crate) async fn ask(server: &Server, request: &str, body: &str) -> (u16, Value) {
     let head = if body.is_empty() { request.to_owned() } else { format!("{request}\r\ncontent-length: {}", body.len()) };
     let response = server.http_with_body(&head, body).await;
     let text = String::from_utf8(response).unwrap();

@@ -68,7 +68,7 @@ impl Simulation for StandInWorld {
                 Command::Drive { client, drive, .. } => {
                     self.throttle.insert(client, drive.throttle);
                 }
-                Command::Spawn { .. } | Command::Cameras(_) | Command::Join { .. } | Command::Return { .. } => {}
+                Command::Spawn { .. } | Command::Cameras(_) | Command::Join { .. } | Command::Return { .. } | Command::Adapt(_) => {}
             }
         }
         for (client, object) in &mut self.objects {

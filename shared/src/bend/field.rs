@@ -169,6 +169,19 @@ impl Field {
         }
     }
 
+    /// A copy of the field around a patch: of it and its neighbours.
+    pub fn around(&self, patch: PatchIndex) -> Self {
+        let near = |toward| neighbour(&self.layout, self.edges, patch, toward).map(|neighbour| neighbour.index);
+        let kept: Vec<_> = AROUND.into_iter().filter_map(near).chain([patch]).collect();
+        Self {
+            layout: self.layout,
+            kinds: self.kinds.clone(),
+            patches: self.patches.iter().filter(|patch| kept.contains(&patch.index())).cloned().collect(),
+            workspace: Workspace::default(),
+            ..*self
+        }
+    }
+
     /// Frees every patch whose cells are all at rest within the tolerance and that has no active neighbour, unless `keep` is true for it.
     pub fn sleep_quiet(&mut self, keep: impl Fn(PatchIndex) -> bool) {
         self.patches.retain(|patch| !patch.tiles.is_still() || patch.tiles.any_active() || keep(patch.index()));

@@ -18,6 +18,10 @@ impl Regions {
         Self { limit, evicted: 0 }
     }
 
+    pub(super) fn set_limit(&mut self, limit: usize) {
+        self.limit = limit;
+    }
+
     /// Number of patches so far that were put to sleep because of the limit.
     pub(super) fn evicted(&self) -> u64 {
         self.evicted

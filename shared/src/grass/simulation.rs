@@ -48,6 +48,8 @@ pub struct BendSimulation {
     rejected_count: u64,
     reset_count: u64,
     regions: Regions,
+    /// Limit of awake patches of the scene.
+    awake_limit: usize,
     report: Report,
     steps: CodeSteps,
 }
@@ -96,6 +98,7 @@ impl BendSimulation {
             rejected_count: 0,
             reset_count: 0,
             regions: Regions::new(limit),
+            awake_limit: limit,
             report: Report::default(),
             steps: CodeSteps::from(&scene.stream),
         }
@@ -119,6 +122,16 @@ impl BendSimulation {
     /// Number of patches so far that were put to sleep because of the limit of awake patches.
     pub fn evicted(&self) -> u64 {
         self.regions.evicted()
+    }
+
+    /// Largest number of awake patches that the scene allows.
+    pub fn awake_limit(&self) -> u32 {
+        self.awake_limit as u32
+    }
+
+    /// Lowers the limit of awake patches, at most to 1, or raises it again, at most to that of the scene.
+    pub fn limit_awake(&mut self, patches: u32) {
+        self.regions.set_limit((patches as usize).clamp(1, self.awake_limit));
     }
 
     /// Number of patches so far that were put to rest because their grass moved faster than the scheme can follow, or was NaN or infinite.

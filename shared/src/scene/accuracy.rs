@@ -32,7 +32,7 @@ impl Default for Accuracy {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Budget {
-    /// Mean time of the wind's solver per tick (ms), as the cost model gives it. Default 0, no limit; allowed 0..=1000.
+    /// Mean time of a tick on the server (ms). The plan lets the wind's solver take no more, and details of a run give way where ticks take longer. Default 0, no limit for the plan and half a tick for the run; allowed 0..=1000.
     pub server_ms: f32,
     /// Time of a picture on the client (ms). Default 0, no limit; allowed 0..=1000.
     pub client_ms: f32,

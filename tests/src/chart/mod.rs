@@ -2,6 +2,7 @@
 //!
 //! | module | what it does |
 //! |---|---|
+//! | [`dial`] | one storm at three settings of its accuracy; planned settings beside those of the literature |
 //! | [`features`] | what parts of a scene cost: step, causes on the wire, frame |
 //! | [`gallery`] | the gallery page |
 //! | [`gpu`] | the renderer on a graphics card, beside its aims |
@@ -14,6 +15,7 @@
 //! | [`versions`] | the same views with two versions of Prairie in a browser |
 //! | [`zhang`] | the platform and the scene of Zhang's thesis, measured |
 
+pub mod dial;
 pub mod features;
 pub mod gallery;
 pub mod gpu;

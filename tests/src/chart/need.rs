@@ -31,7 +31,7 @@ const DT_SECS: f32 = 1.0 / 30.0;
 
 /// Who is there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Visitor {
+pub(super) enum Visitor {
     Nobody,
     /// Somebody who stands still.
     Viewer,
@@ -92,14 +92,14 @@ fn cpu_secs() -> Result<f64> {
 }
 
 /// A visitor's end of the line.
-struct Line {
+pub(super) struct Line {
     socket: WebSocketStream<TcpStream>,
     visitor: Visitor,
     drives: bool,
 }
 
 impl Line {
-    async fn open(addr: SocketAddr, visitor: Visitor) -> Result<Self> {
+    pub(super) async fn open(addr: SocketAddr, visitor: Visitor) -> Result<Self> {
         let config = WebSocketConfig::default().max_message_size(Some(SERVER_MESSAGE_LIMIT)).max_frame_size(Some(SERVER_MESSAGE_LIMIT));
         let (socket, _) = client_async_with_config(format!("ws://{addr}/ws"), TcpStream::connect(addr).await?, Some(config)).await?;
         let mut line = Self { socket, visitor, drives: false };
@@ -112,7 +112,7 @@ impl Line {
     }
 
     /// Receives and acknowledges frames for a time; returns the bytes received.
-    async fn stay(&mut self, time: Duration) -> Result<usize> {
+    pub(super) async fn stay(&mut self, time: Duration) -> Result<usize> {
         let (end, mut bytes) = (Instant::now() + time, 0);
         while let Ok(message) = tokio::time::timeout(end.saturating_duration_since(Instant::now()), self.socket.next()).await {
             let message = match message.context("the server has gone")?? {

@@ -8,6 +8,7 @@ Examples:
   cargo run --release -p tests --bin chart -- heights
   cargo run --release -p tests --bin chart -- plates --only gust
   cargo run --release -p tests --bin chart -- gpu
+  cargo run --release -p tests --bin chart -- dial
   cargo run --release -p tests --bin chart -- need
   cargo run --release -p tests --bin chart -- peers --peer webgpu-grass=../webgpu-grass/dist
   cargo run --release -p tests --bin chart -- start

@@ -19,7 +19,7 @@ use tests::chart::gallery::reference_path;
 use tests::chart::peers::{self, Peer};
 use tests::chart::plates::Plate;
 use tests::chart::versions::{PAGE_VIEWS, PageView};
-use tests::chart::{features, gpu, heights, need, start, versions, zhang};
+use tests::chart::{dial, features, gpu, heights, need, start, versions, zhang};
 
 use drawings::{draw_gallery, draw_pictures, draw_plates};
 use help::{EXAMPLES, GPU_FILES, PEERS_FILES, PICTURE_FILES, PLATES_FILES, START_FILES, VERSIONS_FILES};
@@ -116,6 +116,15 @@ enum Model {
         #[arg(long)]
         quick: bool,
     },
+    /// One storm at three settings of its accuracy, with error, cost, data and picture; planned settings beside those of the literature
+    Dial {
+        /// Output folder
+        #[arg(long, value_name = "DIR", default_value = "tests/results")]
+        out: PathBuf,
+        /// Small pictures and short runs, for a quick look
+        #[arg(long)]
+        quick: bool,
+    },
     /// Frame rates of other programs that draw grass, and of ours, in a browser with software WebGPU
     #[command(after_help = PEERS_FILES)]
     Peers {
@@ -205,6 +214,7 @@ fn main() -> Result<()> {
         Model::Heights { out, size, quality } => heights::series(&Gpu::headless()?, size, quality)?.save(&out),
         Model::Plates { out, only } => draw_plates(&out, &only),
         Model::Gpu { out, quick } => report_gpu(&out, quick),
+        Model::Dial { out, quick } => report_dial(&out, quick),
         Model::Need { out, quick } => report_need(&out, quick),
         Model::Peers { peers, seconds, out } => compare_peers(&peers, seconds, &out),
         Model::Start { pages, out } => time_starts(pages, &out),
@@ -281,6 +291,13 @@ fn report_need(out: &Path, quick: bool) -> Result<()> {
     let report = need::report(quick, |name| bar.set_message(name.to_owned()))?;
     bar.finish_and_clear();
     write_report(&report, out, "need.md")
+}
+
+fn report_dial(out: &Path, quick: bool) -> Result<()> {
+    let bar = spinner();
+    let report = dial::report(quick, out, |name| bar.set_message(name.to_owned()))?;
+    bar.finish_and_clear();
+    write_report(&report, out, "dial.md")
 }
 
 fn report_gpu(out: &Path, quick: bool) -> Result<()> {

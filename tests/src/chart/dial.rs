@@ -1,0 +1,248 @@
+//! The dial: one storm at three settings of its accuracy, with error, cost, data and picture of each; and the planned settings beside those of the literature at
+//! equal errors.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context as _, Result};
+use prairie::charts::image::Picture;
+use prairie::charts::still::Still;
+use prairie::charts::views::Eye;
+use prairie::plan::fronts::Fronts;
+use prairie::plan::{Plan, Silent};
+use prairie::scenes::{self, LoadedScene, OpenScene};
+use prairie::studio::{Act, Stage};
+use prairie::world::{Command, World};
+use prairie_charts::machine::machine;
+use prairie_charts::table::markdown;
+use prairie_client::render::{Gpu, Quality};
+use prairie_core::bend::{Scheme, Seams};
+use prairie_core::scene::{Accuracy, Scene, VehicleKind, WindMethod};
+use prairie_core::wire::Drive;
+
+use super::need::{Line, Visitor};
+use crate::prairie::Prairie;
+
+const SCENE: &str = "storm";
+
+/// A setting of the dial.
+#[derive(Clone, Copy, Debug)]
+struct Dial {
+    name: &'static str,
+    /// Tolerances of the wind and of the bending angle; `None` for the scene as it is.
+    tolerances: Option<[&'static str; 2]>,
+}
+
+const DIALS: [Dial; 4] = [
+    Dial { name: "as the scene states it", tolerances: None },
+    Dial { name: "fine: wind 3 %, bend 0.5°", tolerances: Some(["3 %", "0.5 deg"]) },
+    Dial { name: "middle: wind 8 %, bend 2°", tolerances: Some(["8 %", "2 deg"]) },
+    Dial { name: "coarse: wind 30 %, bend 8°", tolerances: Some(["30 %", "8 deg"]) },
+];
+
+/// What is measured of a setting.
+struct Setting {
+    words: String,
+    wind_percent: f64,
+    bend_deg: f64,
+    /// Mean time of a step of the world with a car in it (ms).
+    tick_ms: f64,
+    kbit_per_s: f64,
+    picture: Picture,
+}
+
+/// The storm with tolerances, all cells and settings open.
+fn demanding(change: impl FnOnce(&mut Scene)) -> Result<OpenScene> {
+    let mut open = scenes::load_open(SCENE)?;
+    open.loaded.scene.objects.self_driving = 0;
+    change(&mut open.loaded.scene);
+    open.stated.clear();
+    Ok(open)
+}
+
+fn percent(plan: &Plan) -> Result<(f64, f64)> {
+    let wind = plan.wind.as_ref().map_err(|reason| anyhow::anyhow!("{reason}"))?;
+    Ok((100.0 * wind.chosen.error, wind.chosen.ms_per_tick))
+}
+
+impl Dial {
+    async fn measure(&self, gpu: &Gpu, size_px: [u32; 2], measured: Duration) -> Result<Setting> {
+        let open = demanding(|scene| {
+            if let Some([wind, bend]) = self.tolerances {
+                scene.accuracy =
+                    Accuracy { wind: wind.to_owned(), bend: bend.to_owned(), cells: "planned".to_owned(), ..Accuracy::default() };
+            }
+        })?;
+        let plan = open.plan_anew(&Fronts::in_use().fronts, &mut Silent);
+        let (wind_percent, _) = percent(&plan)?;
+        let wind = plan.wind.as_ref().ok().context("a wind")?;
+        let words = wind.chosen.settings.words(open.loaded.scene.wind.method);
+        let bend_deg = plan.bend.error_deg();
+        let loaded = open.resolved(&plan);
+        let tick_ms = tick_ms(&loaded, if measured.as_secs() > 5 { 900 } else { 60 })?;
+        let kbit_per_s = kbit_per_s(loaded.clone(), measured).await?;
+        Ok(Setting { words, wind_percent, bend_deg, tick_ms, kbit_per_s, picture: picture(gpu, &loaded, size_px)? })
+    }
+}
+
+/// Mean time of a step while a car drives (ms), after two seconds.
+fn tick_ms(loaded: &LoadedScene, ticks: u32) -> Result<f64> {
+    let mut world = World::new(&loaded.scene, loaded.maps())?;
+    world.step(&[Command::Join { client: 1 }, Command::Spawn { client: 1, kind: VehicleKind::Car }]);
+    let drive = Drive { throttle: 0.5, steer: 0.6, ..Drive::default() };
+    let mut run = |ticks: u32| (0..ticks).for_each(|number| world.step(&[Command::Drive { client: 1, number, drive }]));
+    run(120);
+    let begun = Instant::now();
+    run(ticks);
+    Ok(1e3 * begun.elapsed().as_secs_f64() / f64::from(ticks))
+}
+
+/// Data to a driver without a replica of the grass.
+async fn kbit_per_s(loaded: LoadedScene, measured: Duration) -> Result<f64> {
+    let world = World::new(&loaded.scene, loaded.maps())?;
+    let prairie = Prairie::serve(loaded, world).await?;
+    let mut line = Line::open(prairie.addr, Visitor::Driver).await?;
+    line.stay(Duration::from_secs(4)).await?;
+    let bytes = line.stay(measured).await?;
+    prairie.stop().await?;
+    Ok(8e-3 * bytes as f64 / measured.as_secs_f64())
+}
+
+/// The scene behind a car that has driven a curve.
+fn picture(gpu: &Gpu, loaded: &LoadedScene, size_px: [u32; 2]) -> Result<Picture> {
+    let mut stage = Stage::new(loaded)?;
+    let camera = Eye::Chase([9.0, 3.2, 1.5]).watch(&mut stage, Act::Track)?;
+    let mut still = Still { stage, camera, size_px };
+    let mut canvas = still.canvas(gpu, Quality::High);
+    Ok(still.draw(&mut canvas).0)
+}
+
+/// Settings of the literature and planned ones that err at most as much.
+struct Pair {
+    what: String,
+    error: String,
+    ms: [f64; 2],
+    planned: String,
+}
+
+/// Zhang's solver (semi-Lagrangian, linear, Jacobi: `stable-fluids`) on the scene's cells times `quarters`/4, and planned settings.
+fn wind_pair(quarters: u32) -> Result<Pair> {
+    let published = demanding(|scene| {
+        let wind = &mut scene.wind;
+        (wind.method, wind.terrain) = (WindMethod::StableFluids, Default::default());
+        for axis in [0, 2] {
+            wind.cells[axis] = wind.cells[axis] * quarters / 4;
+            wind.spacing_m[axis] *= 4.0 / quarters as f32;
+        }
+    })?;
+    let fronts = Fronts::in_use().fronts;
+    let [x, y, z] = published.loaded.scene.wind.cells;
+    let (error_percent, ms) = percent(&published.plan_anew(&fronts, &mut Silent))?;
+    let tolerance = format!("{:.1} %", (10.0 * error_percent).floor().clamp(1.0, 500.0) / 10.0);
+    let planned = demanding(|scene| scene.accuracy = Accuracy { wind: tolerance, cells: "planned".to_owned(), ..Accuracy::default() })?;
+    let plan = planned.plan_anew(&fronts, &mut Silent);
+    let (planned_percent, planned_ms) = percent(&plan)?;
+    let words = plan.wind.as_ref().ok().context("a wind")?.chosen.settings.words(planned.loaded.scene.wind.method);
+    Ok(Pair {
+        what: format!("wind: Zhang's solver on {x} × {y} × {z} cells"),
+        error: format!("{error_percent:.2} %, planned {planned_percent:.2} %"),
+        ms: [ms, planned_ms],
+        planned: words,
+    })
+}
+
+/// Chen and Johan's bend field (Verlet with overlaps, never at rest), and planned settings.
+fn bend_pair() -> Result<Pair> {
+    let published = demanding(|scene| {
+        (scene.bend.scheme, scene.bend.seams) = (Scheme::Verlet, Seams::Overlap);
+        (scene.bend.rest_theta_rad, scene.bend.rest_omega_rad_per_s, scene.stream.theta_error_deg) = (0.0, 0.0, 0.05);
+    })?;
+    let fronts = Fronts::in_use().fronts;
+    let own = published.plan_anew(&fronts, &mut Silent).bend;
+    let tolerance = format!("{:.2} deg", own.error_deg().clamp(0.05, 20.0));
+    let planned =
+        demanding(|scene| scene.accuracy = Accuracy { bend: tolerance, ..Accuracy::default() })?.plan_anew(&fronts, &mut Silent).bend;
+    Ok(Pair {
+        what: "bend field: Chen and Johan's scheme".to_owned(),
+        error: format!("{:.3}°, planned {:.3}°", own.error_deg(), planned.error_deg()),
+        ms: [own.ms_per_tick, planned.ms_per_tick].map(|ms| ms.unwrap_or(f64::NAN)),
+        planned: format!("{} waves, at rest below {:.3}°", planned.scheme.word(), planned.rest_theta_rad.to_degrees()),
+    })
+}
+
+/// Measures the dial, draws `dial.jpg` into `out`, and returns the page as Markdown.
+///
+/// # Errors
+/// When there is no GPU, no port is free, or the picture cannot be written.
+pub fn report(quick: bool, out: &Path, mut progress: impl FnMut(&str)) -> Result<String> {
+    let gpu = Gpu::headless()?;
+    let (size_px, measured) = if quick { ([96, 54], Duration::from_secs(2)) } else { ([320, 180], Duration::from_secs(20)) };
+    let runtime = tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build()?;
+    let mut settings = Vec::new();
+    for dial in &DIALS {
+        progress(dial.name);
+        settings.push((dial.name, runtime.block_on(dial.measure(&gpu, size_px, measured))?));
+    }
+    progress("settings of the literature");
+    let mut pairs = [2, 4, 8].into_iter().take(if quick { 1 } else { 3 }).map(wind_pair).collect::<Result<Vec<_>>>()?;
+    pairs.push(bend_pair()?);
+    std::fs::create_dir_all(out).with_context(|| format!("{} cannot be made", out.display()))?;
+    let row: Vec<Picture> = settings.iter().skip(1).map(|(_, setting)| setting.picture.clone()).collect();
+    Picture::tiled(&row, row.len())?.save(&out.join("dial.jpg"))?;
+    Ok(page(&settings, &pairs))
+}
+
+fn page(settings: &[(&str, Setting)], pairs: &[Pair]) -> String {
+    let rows: Vec<_> = settings
+        .iter()
+        .map(|(name, setting)| {
+            let Setting { words, wind_percent, bend_deg, tick_ms, kbit_per_s, .. } = setting;
+            let figures = [format!("{wind_percent:.2} %"), format!("{bend_deg:.3}°"), format!("{tick_ms:.3}"), format!("{kbit_per_s:.0}")];
+            [vec![(*name).to_owned()], figures.to_vec(), vec![words.clone()]].concat()
+        })
+        .collect();
+    let compared: Vec<_> = pairs
+        .iter()
+        .map(|Pair { what, error, ms: [published, planned], planned: words }| {
+            vec![
+                what.clone(),
+                error.clone(),
+                format!("{published:.4}"),
+                format!("{planned:.4}"),
+                format!("{:.1}", published / planned),
+                words.clone(),
+            ]
+        })
+        .collect();
+    format!(
+        "# The dial\n\n```sh\ncargo run --release -p tests --bin chart -- dial\n```\n\n\
+         The storm at three settings of its [accuracy](../../server/README.md#plan), behind a car that has driven a curve.\n\n\
+         ![the same moment of the storm at fine, middle and coarse settings of the dial, from left to right](dial.jpg)\n\n\
+         Errors are those of the plan's pilot runs. The time is that of a whole step of the world with the car, the data those to its driver without a replica of the grass, on {}.\n\n{}\n\
+         ## Beside settings of the literature\n\n\
+         Settings of the sources in the same storm, and planned ones that may err as much; times per tick by the cost model.\n\n{}",
+        machine(),
+        markdown(&["setting", "error of the wind", "error of the bend", "step (ms)", "data (kbit/s)", "planned wind"], &rows),
+        markdown(&["settings", "error", "published (ms)", "planned (ms)", "ratio", "planned settings"], &compared)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_coarser_dial_errs_more_and_costs_less() {
+        let measured = [DIALS[1], DIALS[3]].map(|dial| {
+            let [wind, bend] = dial.tolerances.unwrap().map(str::to_owned);
+            let cells = "planned".to_owned();
+            let open = demanding(|scene| scene.accuracy = Accuracy { wind, bend, cells, ..Accuracy::default() }).unwrap();
+            let plan = open.plan_anew(&Fronts::built_in(), &mut Silent);
+            let (percent, ms) = percent(&plan).unwrap();
+            (percent, plan.bend.error_deg(), ms)
+        });
+        let [fine, coarse] = measured;
+        assert!(fine.0 <= 3.0 && coarse.0 <= 30.0 && fine.0 < coarse.0, "{measured:?}");
+        assert!(fine.1 < coarse.1 && coarse.2 < fine.2, "{measured:?}");
+    }
+}
