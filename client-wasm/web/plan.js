@@ -8,6 +8,7 @@ const PERIOD_MS = 2000;
 // Asks the server for the plan while the section is open, since scene and run change.
 export function showPlan() {
   let timer = 0;
+  let shown = "";
   const update = async () => {
     clearTimeout(timer);
     if (!byId("plan").open) return;
@@ -16,8 +17,12 @@ export function showPlan() {
       if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
       const plan = await response.json();
       showNow(plan.now);
-      fill(plan);
+      // What stays the same is not built again, so that text remains selected.
+      const text = JSON.stringify({ ...plan, now: null });
+      if (text !== shown) fill(plan);
+      shown = text;
     } catch (error) {
+      shown = "";
       byId("plan-now").replaceChildren();
       byId("plan-parts").replaceChildren(element("p", `The server does not tell its plan: ${error.message}`, "aside"));
     }
@@ -41,7 +46,7 @@ function showNow({ control, may_set_budget, wind_step_secs, awake_limit, gives_w
   byId("plan-now").replaceChildren(
     element("h4", "Now"),
     ...lines.map((line) => element("p", line)),
-    ...(may_set_budget ? [budgetForm(control.budget_ms)] : []),
+    ...(may_set_budget && control ? [budgetForm(control.budget_ms)] : []),
     ...(newest.length ? [element("h4", "Newest decisions"), list(newest)] : []),
   );
 }
@@ -58,15 +63,19 @@ function budgetForm(budget_ms) {
   const form = element("form");
   const label = element("label", "Budget of a tick (ms) ", "line");
   const input = element("input");
-  Object.assign(input, { type: "number", min: "0.001", max: "1000", step: "any", value: String(Number(budget_ms.toPrecision(3))) });
+  Object.assign(input, { type: "number", required: true, min: "0.001", max: "1000", step: "any", value: String(Number(budget_ms.toPrecision(3))) });
   label.append(input);
   const outcome = element("p", "", "aside");
   form.append(label, outcome);
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
-    const response = await fetch("/api/budget", { method: "POST", body: JSON.stringify({ server_ms: input.valueAsNumber }) });
-    outcome.textContent = response.ok ? "" : (await response.json()).error;
-    if (response.ok) input.blur();
+    try {
+      const response = await fetch("/api/budget", { method: "POST", body: JSON.stringify({ server_ms: input.valueAsNumber }) });
+      outcome.textContent = response.ok ? "" : (await response.json()).error;
+      if (response.ok) input.blur();
+    } catch (error) {
+      outcome.textContent = `The server does not answer: ${error.message}`;
+    }
   });
   return form;
 }

@@ -10,7 +10,7 @@ use std::fmt;
 const SHOWN: usize = 16;
 
 /// What gives way while a tick takes longer than its budget, in this order; each level keeps what those before it gave up.
-pub const LADDER: [&str; 6] = [
+pub const LOAD_LEVELS: [&str; 6] = [
     "nothing",
     "the wind is stepped half as often",
     "every other publication is left out",
@@ -39,6 +39,8 @@ pub struct DetailRange {
     pub own: Detail,
     /// Duration of a tick (s).
     pub tick_secs: f32,
+    /// Whether every other publication may be left out.
+    pub may_halve_publications: bool,
 }
 
 /// Reason for another detail.
@@ -81,7 +83,9 @@ pub struct Decision {
     pub tick: u64,
     /// The new detail.
     pub detail: Detail,
-    /// How much gives way to the load: a place in [`LADDER`](LADDER).
+    /// The detail if nothing gave way to the load. Its limit of awake patches is their number before the load limited them.
+    pub unloaded: Detail,
+    /// How much gives way to the load: a place in [`LOAD_LEVELS`](LOAD_LEVELS).
     pub level: u8,
     /// Reason.
     pub reason: Reason,

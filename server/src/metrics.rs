@@ -180,7 +180,12 @@ pub const METRICS: &[Metric] = &[
     world("wind_doubled_error_m_per_s", Gauge, Unit::MetresPerSecond, "the same of steps twice as long", |s| {
         s.diagnostics.wind_doubled_error_m_per_s.into()
     }),
-    world("error_samples", Counter, Unit::Count, "estimates of these errors", |s| s.diagnostics.error_samples.into()),
+    world("wind_step_samples", Counter, Unit::Count, "estimates of the error of the wind's step", |s| {
+        s.diagnostics.wind_step_samples.into()
+    }),
+    world("wind_doubled_samples", Counter, Unit::Count, "estimates of the error of steps twice as long", |s| {
+        s.diagnostics.wind_doubled_samples.into()
+    }),
     world(
         "bend_step_error_deg",
         Gauge,
@@ -189,8 +194,8 @@ pub const METRICS: &[Metric] = &[
         |s| s.diagnostics.bend_step_error_deg.into(),
     ),
     world("awake_limit", Gauge, Unit::Count, "most awake patches at present", |s| s.diagnostics.awake_limit.into()),
-    world("degradation", Gauge, Unit::Count, "how much gives way to the load at present, from 0 (nothing) to 5", |s| {
-        s.diagnostics.degradation.into()
+    world("load_level", Gauge, Unit::Count, "how much gives way to the load at present, from 0 (nothing) to 5", |s| {
+        s.diagnostics.load_level.into()
     }),
     world("decisions", Counter, Unit::Count, "decisions about the detail of the simulation", |s| s.diagnostics.decisions.into()),
     world("laid_tiles", Gauge, Unit::Count, "tiles of 8 × 8 cells with flattened grass or pressed snow", |s| {

@@ -163,7 +163,13 @@ fn commands(tick: u64) -> Vec<Command> {
         20 => vec![Command::Join { client: 2 }, Command::Spawn { client: 2, kind: VehicleKind::ALL[1] }, Command::Leave { client: 1 }],
         23 => {
             let detail = Detail { wind_ticks: 4, awake_limit: 20, publish_divisor: 2 };
-            vec![Command::Adapt(Decision { tick, detail, level: 2, reason: Reason::Overload { busy_ms: 9.0, budget_ms: 8.0 } })]
+            vec![Command::Adapt(Decision {
+                tick,
+                detail,
+                unloaded: detail,
+                level: 2,
+                reason: Reason::Overload { busy_ms: 9.0, budget_ms: 8.0 },
+            })]
         }
         25 => vec![Command::Return { client: 1 }, Command::Remove { client: 2 }],
         _ => vec![],

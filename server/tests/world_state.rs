@@ -39,7 +39,7 @@ fn adapt(world: &World, tick: u64) -> Option<Command> {
         260 => own,
         _ => return None,
     };
-    Some(Command::Adapt(Decision { tick, detail, level: 3, reason: Reason::Overload { busy_ms: 9.0, budget_ms: 8.0 } }))
+    Some(Command::Adapt(Decision { tick, detail, unloaded: detail, level: 3, reason: Reason::Overload { busy_ms: 9.0, budget_ms: 8.0 } }))
 }
 
 fn on_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {

@@ -104,9 +104,10 @@ pub(super) const PLOTS: &[Plot] = &[
         title: "Detail",
         scale: 1.0,
         curves: &[
-            curve("degradation", "degradation", RED),
+            curve("load_level", "load level", RED),
             curve("decisions", "decisions", ORANGE),
-            curve("error_samples", "estimates of errors", GREY),
+            curve("wind_step_samples", "estimates of the wind's error", GREY),
+            curve("wind_doubled_samples", "estimates for steps twice as long", BLUE),
         ],
     },
     Plot { folder: "sent", title: "Sent to clients (kB/s)", scale: 1e-3, curves: &[curve("sent_bytes_per_s", "sent", TEAL)] },

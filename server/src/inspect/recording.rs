@@ -55,8 +55,8 @@ pub(super) struct Recording {
     settings: Objects,
     wind_tick: Option<u64>,
     trails: Trails,
-    /// Number of decisions about the detail so far.
-    decisions: u64,
+    /// Number of decisions about the detail so far; `None` before the first frame.
+    decisions: Option<u64>,
 }
 
 impl Recording {
@@ -74,7 +74,7 @@ impl Recording {
             settings: scene.objects.clone(),
             wind_tick: None,
             trails: Trails::default(),
-            decisions: 0,
+            decisions: None,
         };
         recording.write_static(&TerrainMesh::new(&layout, heights, &scene.light))?;
         Ok(recording)
@@ -131,8 +131,8 @@ impl Recording {
     /// The decisions since the last frame; those from before the recording are left out.
     fn write_decisions(&mut self, snapshot: &Snapshot) -> Result<(), InspectError> {
         let count = snapshot.diagnostics.decisions;
-        let new = (count - self.decisions.min(count)).min(snapshot.decisions.len() as u64) as usize;
-        self.decisions = count;
+        let before = self.decisions.replace(count).unwrap_or(count);
+        let new = count.saturating_sub(before).min(snapshot.decisions.len() as u64) as usize;
         for decision in &snapshot.decisions[snapshot.decisions.len() - new..] {
             let text = format!("{}: {}", decision.reason, decision.detail);
             self.log("decisions", &TextLog::new(text).with_level(TextLogLevel::INFO))?;

@@ -95,7 +95,7 @@ mod tests {
                         _ => Reason::Relief { busy_ms: one, budget_ms: other },
                     };
                     let detail = Detail { wind_ticks, awake_limit, publish_divisor };
-                    Command::Adapt(Decision { tick, detail, level, reason })
+                    Command::Adapt(Decision { tick, detail, unloaded: detail, level, reason })
                 }
             ),
         ]

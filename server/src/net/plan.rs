@@ -2,7 +2,7 @@
 
 use super::app::App;
 use super::scenes::{answer, read_json, refuse};
-use crate::detail::{Decision, LADDER};
+use crate::detail::{Decision, LOAD_LEVELS};
 use axum::body::Body;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode};
@@ -26,17 +26,17 @@ pub(super) async fn plan(State(app): State<Arc<App>>) -> Response {
 fn now(app: &App) -> Value {
     let published = app.published.borrow().clone();
     let (diagnostics, decisions) = (&published.snapshot.diagnostics, &published.snapshot.decisions);
-    let decision = |Decision { tick, detail, level, reason }: &Decision| {
+    let decision = |Decision { tick, detail, level, reason, .. }: &Decision| {
         let time_secs = *tick as f64 / f64::from(app.tick_hz);
         json!({ "tick": tick, "time_secs": time_secs, "detail": detail.to_string(), "level": level, "reason": reason.to_string() })
     };
     json!({
         "control": published.control,
-        "may_set_budget": app.scene_menu.is_open() && published.control.is_some(),
+        "may_set_budget": app.scene_menu.is_open() && app.explanation.demands.is_some(),
         "wind_step_secs": diagnostics.wind_step_secs,
         "awake_limit": diagnostics.awake_limit,
-        "level": diagnostics.degradation,
-        "gives_way": LADDER.get(1..=diagnostics.degradation as usize).unwrap_or_default(),
+        "level": diagnostics.load_level,
+        "gives_way": LOAD_LEVELS.get(1..=diagnostics.load_level as usize).unwrap_or_default(),
         "decisions": decisions.iter().map(decision).collect::<Vec<_>>(),
     })
 }
@@ -48,7 +48,7 @@ struct Budget {
     server_ms: f32,
 }
 
-/// `POST /api/budget`: sets the time that a tick may take on the server, until the world begins anew.
+/// `POST /api/budget`: sets the time that a tick may take on the server, until the server stops or the world begins anew.
 pub(super) async fn set_budget(State(app): State<Arc<App>>, headers: HeaderMap, body: Body) -> Response {
     let Budget { server_ms } = match read_json(&app, &headers, body, "server_ms").await {
         Ok(budget) => budget,
@@ -60,7 +60,7 @@ pub(super) async fn set_budget(State(app): State<Arc<App>>, headers: HeaderMap, 
             "pages may not change the budget of this server; `--change-scene everyone` at its start lets them",
         );
     }
-    if app.published.borrow().control.is_none() {
+    if app.explanation.demands.is_none() {
         return refuse(StatusCode::CONFLICT, "the scene has neither `[accuracy]` nor `[budget]`: its detail stays as it is");
     }
     if !BUDGET_MS.contains(&server_ms) {

@@ -4,6 +4,7 @@ mod attendance;
 mod clock;
 mod controller;
 mod counter_log;
+mod load;
 mod published;
 mod recent_drops;
 mod simulation;

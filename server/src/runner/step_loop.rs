@@ -5,6 +5,7 @@ use super::controller::Controller;
 use super::counter_log::CounterLog;
 use super::published::step_histogram;
 use super::{Attendance, Published, Request, Simulation, Timing};
+use crate::detail::DetailRange;
 use crate::histogram::Histogram;
 use crate::snapshot::{Audience, Diagnostics, PatchQuantiser};
 use crate::world::Command;
@@ -22,6 +23,9 @@ const PAUSED_SLEEP: Duration = Duration::from_millis(100);
 
 /// Time between the publications of a paused world, which show that it is not stuck.
 const PAUSED_PUBLISH: Duration = Duration::from_secs(1);
+
+/// Fewest publications a second that remain when every other one is left out: clients take longer gaps for pauses.
+const LEAST_PUBLISH_HZ: f32 = 8.0;
 
 /// What the loop receives from outside.
 pub(super) struct Intake {
@@ -64,8 +68,10 @@ impl<S: Simulation> Loop<S> {
     ) -> Self {
         let published = simulation.publish(&mut PatchQuantiser::default());
         let (before, newest) = (published.diagnostics, published.decisions.last().copied());
-        let controller = timing.demands.zip(simulation.detail_range());
-        if controller.is_some() {
+        let may_halve_publications = timing.published_hz() >= LEAST_PUBLISH_HZ * 2.0;
+        let range = simulation.detail_range().map(|range| DetailRange { may_halve_publications, ..range });
+        let controller = timing.demands.zip(range);
+        if controller.as_ref().is_some_and(|(demands, _)| demands.wind.is_some() || demands.bend_deg.is_some()) {
             simulation.watch_errors();
         }
         Self {
@@ -123,6 +129,9 @@ impl<S: Simulation> Loop<S> {
             self.receive();
         }
         self.clock.skip(self.start.elapsed());
+        if let Some(controller) = &mut self.controller {
+            controller.forget_load();
+        }
         tracing::info!(tick = self.tick, "the world goes on");
     }
 
@@ -203,7 +212,9 @@ impl<S: Simulation> Loop<S> {
         if resets > self.sender.borrow().snapshot.diagnostics.wind_resets {
             tracing::warn!(resets, "the wind solver failed and restarted from the mean wind");
         }
-        if let Some(patches) = self.evicted.increase(snapshot.diagnostics.evicted_patches) {
+        if let Some(patches) = self.evicted.increase(snapshot.diagnostics.evicted_patches)
+            && snapshot.diagnostics.load_level == 0
+        {
             let awake = snapshot.diagnostics.awake_patches;
             tracing::warn!(patches, awake, "patches far from all cameras were put to sleep: `patches.awake_limit` is reached");
         }
@@ -223,7 +234,7 @@ impl<S: Simulation> Loop<S> {
         if let Some(budget_ms) = *self.intake.budget_ms.borrow() {
             controller.set_budget(budget_ms);
         }
-        if let Some(decision) = controller.decide(self.start.elapsed(), self.tick, busy_ms, diagnostics) {
+        if let Some(decision) = controller.decide(self.start.elapsed(), self.tick, steps as u32, busy_ms, diagnostics) {
             tracing::info!(tick = self.tick, "{}: {}", decision.reason, decision.detail);
             self.waiting.push(Command::Adapt(decision));
         }

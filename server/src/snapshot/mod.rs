@@ -108,14 +108,16 @@ pub struct Diagnostics {
     pub wind_step_error_m_per_s: f32,
     /// The same of steps twice as long.
     pub wind_doubled_error_m_per_s: f32,
-    /// Number of estimates of these errors.
-    pub error_samples: u64,
+    /// Number of estimates of the first of these errors.
+    pub wind_step_samples: u64,
+    /// The same of steps twice as long.
+    pub wind_doubled_samples: u64,
     /// Estimated error of the bending angle from the time step, over the time in which waves decay (degrees); 0 where nobody watches it.
     pub bend_step_error_deg: f32,
     /// Most awake patches at present.
     pub awake_limit: u32,
-    /// How much gives way to the load at present: a place in [`LADDER`](crate::detail::LADDER).
-    pub degradation: u32,
+    /// How much gives way to the load at present: a place in [`LOAD_LEVELS`](crate::detail::LOAD_LEVELS).
+    pub load_level: u32,
     /// Number of decisions about the detail.
     pub decisions: u64,
 }

@@ -17,6 +17,9 @@ use std::time::{Duration, Instant};
 /// Time between frames that say nothing new, which keep the client's clock: longer than what its clock takes for the interval of the publications.
 const QUIET_PERIOD: Duration = Duration::from_millis(480);
 
+/// Time without wind after which no more is expected.
+const CALM_AFTER: Duration = Duration::from_secs(1);
+
 /// Limits on the data sent to one client.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SendLimits {
@@ -75,6 +78,8 @@ pub struct ClientState {
     held_wind: Option<u32>,
     /// Version of the poses that were sent last, and when.
     sent_poses: Option<(u64, Instant)>,
+    /// When wind was sent last.
+    sent_wind: Option<Instant>,
     /// Version of each announcement that was sent.
     held_announced: [u64; ANNOUNCEMENTS],
     /// The newest input of the client's vehicle that was reported.
@@ -98,6 +103,7 @@ impl ClientState {
             patch_messages: 0,
             held_wind: None,
             sent_poses: None,
+            sent_wind: None,
             held_announced: [0; ANNOUNCEMENTS],
             reported: None,
             sent_broken: 0,
@@ -167,15 +173,18 @@ impl ClientState {
         self.held_announced = publication.announced.each_ref().map(|announced| announced.version);
         self.reported = applied;
         self.sent_broken = broken.map_or(self.sent_broken, |(count, _)| count);
+        self.sent_wind = if wind.is_some() { Some(publication.now) } else { self.sent_wind };
         self.held_wind = wind.or(self.held_wind);
         self.hold(patches);
         Some(bytes)
     }
 
-    /// Whether the poses are those that were sent last, a moment ago.
+    /// Whether the poses are those that were sent last, a moment ago, and no wind blows: with wind, frames come so often that the client would take the time
+    /// between them for that of the publications, and show vehicles so much later.
     fn is_quiet(&self, publication: &Publication<'_>) -> bool {
-        let is_recent = |at: &Instant| publication.now.duration_since(*at) < QUIET_PERIOD;
-        self.sent_poses.as_ref().is_some_and(|(version, at)| *version == publication.poses_version && is_recent(at))
+        let is_recent = |at: Instant| publication.now.duration_since(at) < QUIET_PERIOD;
+        let is_calm = self.sent_wind.is_none_or(|at| publication.now.duration_since(at) > CALM_AFTER);
+        is_calm && self.sent_poses.is_some_and(|(version, at)| version == publication.poses_version && is_recent(at))
     }
 
     /// Messages of patches, wind and the parts of a replica's state, as far as the budget allows; the number of the wind frame, and the patches sent.

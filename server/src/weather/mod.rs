@@ -31,8 +31,8 @@ use prairie_wind::{Air, Body, Config, ConfigError, Jet, Method, Real, SolidError
 use rest::Rest;
 use settings::settings;
 use std::sync::Arc;
-pub use step_halving::StepErrors;
 use step_halving::StepHalving;
+pub use step_halving::{StepErrorEstimate, StepErrors};
 use vehicles::Vehicles;
 
 /// Rate at which the wind is released to the rest of the world and to clients (Hz), rounded to whole solver steps.
@@ -57,6 +57,7 @@ pub struct Weather {
     /// Allowed ticks per step, ascending, and the scene's own.
     allowed_ticks: Vec<u64>,
     own_ticks: u64,
+    tick_hz: f32,
     dt_secs: f32,
     /// Ticks per frame.
     ticks_per_frame: u64,
@@ -154,6 +155,7 @@ impl Weather {
             allowed_ticks: allowed_ticks(method, &config, ticks_per_step, scene.dt_secs()),
             own_ticks: ticks_per_step,
             wanted_ticks: ticks_per_step,
+            tick_hz: scene.tick_hz,
             dt_secs: scene.dt_secs(),
             halving: None,
             config,
@@ -184,6 +186,8 @@ impl Weather {
         self.bodies.extend(motions.iter().filter_map(|motion| self.vehicles.body(&in_box(motion), ground_m(motion))));
         if !self.rests(&jets) {
             self.advance(tick, motions, &jets, height, grass);
+        } else if let Some(halving) = &mut self.halving {
+            halving.rest();
         }
         if tick.is_multiple_of(self.ticks_per_frame) {
             self.release(tick);
@@ -204,7 +208,7 @@ impl Weather {
     fn set_interval(&mut self, ticks: u64) {
         let before = self.ticks_per_step;
         (self.ticks_per_step, self.step_secs) = (ticks, (ticks as f32 * self.dt_secs).into());
-        self.ticks_per_frame = frame_interval(1.0 / self.dt_secs, ticks);
+        self.ticks_per_frame = frame_interval(self.tick_hz, ticks);
         if let Some(halving) = &mut self.halving {
             halving.change_step(ticks as f64 / before as f64);
         }
@@ -275,6 +279,9 @@ impl Weather {
                 self.air = initial_air(self.method, &self.config, &self.terrain, &self.solids, height)
                     .expect("the same settings were accepted before");
                 self.resets += 1;
+                if let Some(halving) = &mut halving {
+                    halving.discard();
+                }
             }
         }
         if let Some(halving) = &mut halving {

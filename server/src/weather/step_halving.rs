@@ -15,13 +15,23 @@ const SAMPLE_SECS: f64 = 1.0;
 /// Error of a step over the difference of the wind after it and after two steps of half the length, for a method of first order.
 const RICHARDSON: f64 = 2.0;
 
-/// Estimated growth of the error of the horizontal wind of the lowest cells, root mean square (m/s per s).
+/// Growth of the error (m/s per s) that stands for steps that fail.
+const FAILED_M_PER_S2: f64 = 1e3;
+
+/// Estimated growth of the error of the horizontal wind of the lowest cells, root mean square.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepErrors {
-    /// With the present step; `None` before the first sample.
-    pub present_m_per_s2: Option<f64>,
-    /// With steps twice as long; infinite where they fail.
-    pub doubled_m_per_s2: Option<f64>,
+    /// With the present step.
+    pub present: StepErrorEstimate,
+    /// With steps twice as long.
+    pub doubled: StepErrorEstimate,
+}
+
+/// Estimate of an error.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepErrorEstimate {
+    /// Growth of the error (m/s per s); `None` where nothing is known.
+    pub m_per_s2: Option<f64>,
     /// Number of samples so far.
     pub samples: u64,
 }
@@ -66,11 +76,26 @@ impl StepHalving {
         self.errors
     }
 
-    /// Keeps of the estimates what holds after the step has become `factor` times as long.
+    /// Keeps of the estimates what follows for a step `factor` times as long, with errors of first order.
     pub(super) fn change_step(&mut self, factor: f64) {
-        let StepErrors { present_m_per_s2: present, doubled_m_per_s2: doubled, .. } = self.errors;
-        let (present, doubled) = if factor >= 2.0 { (doubled, None) } else { (present, present) };
-        (self.errors.present_m_per_s2, self.errors.doubled_m_per_s2, self.waiting) = (present, doubled, None);
+        let StepErrors { present, doubled } = &mut self.errors;
+        (present.m_per_s2, doubled.m_per_s2) = if factor >= 2.0 {
+            (doubled.m_per_s2.map(|rate| 0.5 * factor * rate), None)
+        } else {
+            (present.m_per_s2.map(|rate| factor * rate), present.m_per_s2.filter(|_| factor == 0.5))
+        };
+        self.discard();
+    }
+
+    /// Discards the sample that waits.
+    pub(super) fn discard(&mut self) {
+        self.waiting = None;
+    }
+
+    /// The air is at rest, where no step errs.
+    pub(super) fn rest(&mut self) {
+        self.discard();
+        (self.errors.present.m_per_s2, self.errors.doubled.m_per_s2) = (Some(0.0), Some(0.0));
     }
 
     /// Begins a sample where one is due, before a step of the weather's air from `secs` of its intensities on.
@@ -88,7 +113,8 @@ impl StepHalving {
         };
         match self.wind_after(weather, count, step_secs, secs, jets) {
             Some(velocities) => self.waiting = Some((self.last, steps_of_the_air, velocities)),
-            None => self.note(self.last, f64::INFINITY),
+            None if self.last == Trial::Doubled => self.note(Trial::Doubled, FAILED_M_PER_S2),
+            None => {}
         }
     }
 
@@ -117,12 +143,11 @@ impl StepHalving {
     }
 
     fn note(&mut self, trial: Trial, m_per_s2: f64) {
-        let errors = &mut self.errors;
-        match trial {
-            Trial::Halved => errors.present_m_per_s2 = Some(m_per_s2),
-            Trial::Doubled => errors.doubled_m_per_s2 = Some(m_per_s2),
-        }
-        errors.samples += 1;
+        let estimate = match trial {
+            Trial::Halved => &mut self.errors.present,
+            Trial::Doubled => &mut self.errors.doubled,
+        };
+        *estimate = StepErrorEstimate { m_per_s2: Some(m_per_s2.min(FAILED_M_PER_S2)), samples: estimate.samples + 1 };
     }
 }
 
@@ -165,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn the_estimate_is_within_a_factor_of_three_in_95_of_100_random_states() {
+    fn the_estimate_is_within_a_factor_of_three_in_950_of_1000_random_states() {
         let (mut random, height) = (SplitMix64::new(3), crate::scenes::load("meadow").unwrap().height);
         let mut ratios = Vec::new();
         for _ in 0..1000 {
@@ -181,6 +206,8 @@ mod tests {
         let outside: Vec<_> = ratios.iter().filter(|(ratio, ..)| !(1.0 / 3.0..=3.0).contains(ratio)).take(20).collect();
         println!("{} within a factor 3, {} within 1.2; outside: {outside:?}", within(3.0), within(1.2));
         assert!(within(3.0) >= 950, "{}", within(3.0));
-        assert!(within(1.0001) < 950, "the estimate is the error itself: the test cannot fail");
+        // Control: estimates of a tenth of the difference.
+        let tenths = ratios.iter().filter(|(ratio, ..)| (1.0 / 3.0..=3.0).contains(&(0.1 * ratio))).count();
+        assert!(tenths < 950, "{tenths} tenths of the estimates are as good");
     }
 }

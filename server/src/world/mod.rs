@@ -19,7 +19,7 @@ use crate::plants::PlantDamage;
 use crate::race::Race;
 use crate::settings_error::SettingsError;
 use crate::snapshot::{Diagnostics, PatchQuantiser, Snapshot};
-use crate::weather::{Weather, pilot};
+use crate::weather::{StepErrorEstimate, Weather, pilot};
 use departed::Departed;
 use prairie_core::bend::Scheme;
 use prairie_core::body::Motion;
@@ -308,7 +308,12 @@ impl World {
     /// What the detail can be adapted to.
     pub fn detail_range(&self) -> DetailRange {
         let own = Detail { wind_ticks: self.weather.own_ticks() as u32, awake_limit: self.bend.awake_limit(), publish_divisor: 1 };
-        DetailRange { wind_ticks: self.weather.allowed_ticks().iter().map(|ticks| *ticks as u32).collect(), own, tick_secs: self.dt_secs }
+        DetailRange {
+            wind_ticks: self.weather.allowed_ticks().iter().map(|ticks| *ticks as u32).collect(),
+            own,
+            tick_secs: self.dt_secs,
+            may_halve_publications: true,
+        }
     }
 
     /// Estimates the errors of the time steps of wind and bend field from now on, for the [diagnostics](Diagnostics).
@@ -340,7 +345,7 @@ impl World {
 
     fn diagnostics(&self) -> Diagnostics {
         let (wind, bend, wind_step) = (self.weather.report(), self.bend.report(), self.weather.step_errors());
-        let within_horizon = |m_per_s2: Option<f64>| m_per_s2.map_or(0.0, |rate| (rate * pilot::HORIZON_SECS) as f32);
+        let within_horizon = |error: StepErrorEstimate| error.m_per_s2.map_or(0.0, |rate| (rate * pilot::HORIZON_SECS) as f32);
         Diagnostics {
             step_secs: 0.0,
             step_max_secs: 0.0,
@@ -357,12 +362,13 @@ impl World {
             substeps: bend.substeps,
             courant: bend.courant_fraction,
             wind_step_secs: self.weather.step_secs() as f32,
-            wind_step_error_m_per_s: within_horizon(wind_step.present_m_per_s2),
-            wind_doubled_error_m_per_s: within_horizon(wind_step.doubled_m_per_s2),
-            error_samples: wind_step.samples,
+            wind_step_error_m_per_s: within_horizon(wind_step.present),
+            wind_doubled_error_m_per_s: within_horizon(wind_step.doubled),
+            wind_step_samples: wind_step.present.samples,
+            wind_doubled_samples: wind_step.doubled.samples,
             bend_step_error_deg: self.halving.as_ref().map_or(0.0, |halving| halving.error_rad().to_degrees()),
             awake_limit: self.decisions.newest().map_or(self.bend.awake_limit(), |newest| newest.detail.awake_limit),
-            degradation: self.decisions.newest().map_or(0, |newest| newest.level.into()),
+            load_level: self.decisions.newest().map_or(0, |newest| newest.level.into()),
             decisions: self.decisions.count(),
         }
     }

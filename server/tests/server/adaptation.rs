@@ -3,7 +3,7 @@
 use crate::scene_menu::ask;
 use crate::test_client::PlainClient;
 use crate::test_server::{Server, within};
-use prairie::detail::{Demands, LADDER, WindDemand};
+use prairie::detail::{Demands, LOAD_LEVELS, WindDemand};
 use prairie::journal::{Player, WorldFolder, find, open};
 use prairie::net::bind;
 use prairie::scenes::{self, Explanation, LoadedScene};
@@ -67,14 +67,15 @@ async fn a_budget_that_no_tick_keeps_makes_all_give_way_and_a_replay_repeats_it(
 
     assert_eq!(set_budget(&server, r#"{"server_ms": 0.001}"#).await.0, 200);
     let loaded = until(&server, |now| now["level"] == 5).await;
-    assert_eq!(loaded["gives_way"], json!(LADDER[1..]));
+    assert_eq!(loaded["gives_way"], json!(LOAD_LEVELS[1..]));
     let decisions = loaded["decisions"].as_array().unwrap();
     let levels: Vec<_> = decisions.iter().filter_map(|decision| decision["level"].as_u64()).filter(|level| *level > 0).collect();
     assert_eq!(levels, [1, 2, 3, 4, 5]);
     let reason = decisions.last().unwrap()["reason"].as_str().unwrap();
     assert!(reason.starts_with("overload: ") && reason.ends_with(" ms a tick, budget 0.001 ms"), "{reason}");
+    // The step of the wind changes at the next tick that both steps have in common.
     let own_secs = before["wind_step_secs"].as_f64().unwrap();
-    assert!((loaded["wind_step_secs"].as_f64().unwrap() / own_secs - 4.0).abs() < 0.01 || own_secs > 0.063, "{loaded}");
+    until(&server, |now| (now["wind_step_secs"].as_f64().unwrap() / own_secs - 4.0).abs() < 0.01).await;
     // Drives on in less detail; the budget comes back, and so does the detail, one by one.
     assert_eq!(set_budget(&server, r#"{"server_ms": 1000}"#).await.0, 200);
     until(&server, |now| now["level"] == 4).await;
@@ -84,7 +85,7 @@ async fn a_budget_that_no_tick_keeps_makes_all_give_way_and_a_replay_repeats_it(
     let mut player = Player::open_oldest(&own, &demanding()).unwrap().expect("a recording");
     player.advance(u64::MAX);
     let replayed = player.world.snapshot();
-    assert_eq!((replayed.diagnostics.degradation, replayed.decisions.len() as u64), (4, replayed.diagnostics.decisions));
+    assert_eq!((replayed.diagnostics.load_level, replayed.decisions.len() as u64), (4, replayed.diagnostics.decisions));
     let mut resumed = open(Some(&WorldFolder::new(folder.path().to_owned())), &demanding()).unwrap();
     assert_eq!(resumed.world().tick(), player.world.tick());
     assert!(resumed.world().save().encode() == player.world.save().encode(), "the replay has the bits of the world that ran");
@@ -98,7 +99,7 @@ async fn budgets_that_cannot_be_set_are_refused() {
     for (body, status, error) in [
         ("{}", 400, "the body is not a JSON object with `server_ms`"),
         (r#"{"server_ms": 0}"#, 400, "`server_ms` is 0; allowed: 0.001 to 1000"),
-        (r#"{"server_ms": 1e30}"#, 400, "`server_ms` is 1e30; allowed: 0.001 to 1000"),
+        (r#"{"server_ms": 2000}"#, 400, "`server_ms` is 2000; allowed: 0.001 to 1000"),
         (r#"{"server_ms": 1, "more": 2}"#, 400, "the body is not a JSON object with `server_ms`"),
     ] {
         let (found, answer) = set_budget(&server, body).await;

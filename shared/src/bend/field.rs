@@ -108,6 +108,11 @@ impl Field {
         self.dt_secs
     }
 
+    /// Sets the time between the two states that every patch holds (s): their motion is then another one.
+    pub fn set_between_states(&mut self, secs: f32) {
+        self.dt_secs = Some(secs);
+    }
+
     /// Number of awake patches.
     pub fn awake_count(&self) -> usize {
         self.patches.len()

@@ -4,12 +4,13 @@ use super::WaveParams;
 use crate::grid::PatchLayout;
 use crate::scene::Scene;
 use crate::terrain::{CoverMap, KindMap};
+use std::sync::Arc;
 
 /// Wave constants of each kind of grass, and where each grows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kinds {
     waves: Vec<WaveParams>,
-    map: Option<Pixels>,
+    map: Option<Arc<Pixels>>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +32,7 @@ impl Kinds {
     /// When a pixel names a missing kind, or `kinds` is not of the given size.
     pub fn mapped(waves: Vec<WaveParams>, size_px: [usize; 2], kinds: Vec<u8>) -> Self {
         assert!(size_px[0] * size_px[1] == kinds.len() && kinds.iter().all(|&kind| usize::from(kind) < waves.len()));
-        Self { waves, map: Some(Pixels { size_px, kinds }) }
+        Self { waves, map: Some(Arc::new(Pixels { size_px, kinds })) }
     }
 
     /// The kinds of a scene, over its covering map.

@@ -17,7 +17,7 @@ use prairie_charts::machine::machine;
 use prairie_charts::table::markdown;
 use prairie_client::render::{Gpu, Quality};
 use prairie_core::bend::{Scheme, Seams};
-use prairie_core::scene::{Accuracy, Scene, VehicleKind, WindMethod};
+use prairie_core::scene::{Accuracy, Scene, VehicleKind, WindMethod, WindTerrain};
 use prairie_core::wire::Drive;
 
 use super::need::{Line, Visitor};
@@ -129,7 +129,7 @@ struct Pair {
 fn wind_pair(quarters: u32) -> Result<Pair> {
     let published = demanding(|scene| {
         let wind = &mut scene.wind;
-        (wind.method, wind.terrain) = (WindMethod::StableFluids, Default::default());
+        (wind.method, wind.terrain) = (WindMethod::StableFluids, WindTerrain::Follow);
         for axis in [0, 2] {
             wind.cells[axis] = wind.cells[axis] * quarters / 4;
             wind.spacing_m[axis] *= 4.0 / quarters as f32;

@@ -2,9 +2,11 @@
 
 use anyhow::{Result, ensure};
 use prairie::charts::worlds;
-use prairie::scenes::{self, LoadedScene};
+use prairie::detail::Demands;
+use prairie::scenes::{self, Explanation, LoadedScene};
 use prairie::world::World;
 use serde_json::json;
+use std::sync::Arc;
 use tests::browser::Browser;
 use tests::prairie::Prairie;
 
@@ -39,6 +41,29 @@ async fn the_panel_shows_methods_and_what_is_left_out() -> Result<()> {
     ] {
         ensure!(text.as_str().is_some_and(|text| text.to_lowercase().contains(&word.to_lowercase())), "no {word} in {text}");
     }
+    Ok(())
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_panel_sets_the_budget_and_shows_what_gives_way() -> Result<()> {
+    let hills = worlds::loaded_hills(|_| 0)?;
+    let demands = Demands { server_ms: 1000.0, ..Demands::default() };
+    let hills = LoadedScene { explanation: Arc::new(Explanation { demands: Some(demands), ..Explanation::default() }), ..hills };
+    let prairie = Prairie::serve_with_menu(hills).await?;
+    let browser = prairie.visitor_at("?quality=low").await?;
+    browser.evaluate("(document.getElementById('plan').open = true)").await?;
+    let now = browser.until("document.getElementById('plan-now').innerText").await?;
+    ensure!(now.as_str().is_some_and(|now| now.contains("ms of 1000 ms") && now.contains("Wind stepped every")), "{now}");
+    browser.until("document.querySelector('#plan-now input')").await?;
+    browser
+        .evaluate("(document.querySelector('#plan-now input').value = '0.001', document.querySelector('#plan-now form').requestSubmit())")
+        .await?;
+    browser.until("document.getElementById('plan-now').innerText.includes('three quarters of the awake patches sleep')").await?;
+    let decisions = browser.evaluate("document.getElementById('plan-now').innerText").await?;
+    ensure!(
+        decisions.as_str().is_some_and(|text| text.contains("overload: ") && text.contains("budget 0.001 ms → wind stepped every")),
+        "{decisions}"
+    );
     Ok(())
 }
 

@@ -85,6 +85,21 @@ fn a_wind_whose_interval_changes_is_restored() {
 }
 
 #[test]
+fn the_scenes_own_interval_has_the_same_frames_after_a_detour() {
+    for own_ticks in [1, 2, 3, 4, 5] {
+        let loaded = crate::scenes::load("meadow").unwrap();
+        let mut scene = loaded.scene.clone();
+        scene.wind.step_secs = ((own_ticks as f32 - 0.5) / scene.tick_hz).max(0.004);
+        let mut weather = Weather::new(&scene, &loaded.height, &loaded.cover).unwrap();
+        let (frame, own) = (weather.ticks_per_frame, weather.own_ticks());
+        assert_eq!(own, own_ticks);
+        weather.set_interval(2 * own);
+        weather.set_interval(own);
+        assert_eq!(weather.ticks_per_frame, frame, "every {own_ticks} ticks");
+    }
+}
+
+#[test]
 fn watching_the_errors_changes_no_bit() {
     let (mut watched, mut unseen) = (Blowing::new("storm"), Blowing::new("storm"));
     watched.weather.watch_errors(&watched.height);
@@ -92,13 +107,18 @@ fn watching_the_errors_changes_no_bit() {
         watched.step();
         unseen.step();
     }
-    assert!(watched.weather.step_errors().samples >= 4, "{:?}", watched.weather.step_errors());
+    assert!(
+        watched.weather.step_errors().present.samples >= 2 && watched.weather.step_errors().doubled.samples >= 2,
+        "{:?}",
+        watched.weather.step_errors()
+    );
     assert!(watched.weather.velocities() == unseen.weather.velocities() && watched.weather.frame == unseen.weather.frame);
 }
 
 #[test]
 fn stretched_steps_err_by_no_more_than_is_shown() {
-    for scene in ["storm", "meadow", "cyclones", "lee"] {
+    // At immersed walls, as in the lee of stones, each step errs anew instead of adding to the errors of those before.
+    for (scene, most) in [("storm", 10.0), ("meadow", 10.0), ("cyclones", 10.0), ("lee", 200.0)] {
         let (mut own, mut stretched) = (Blowing::new(scene), Blowing::new(scene));
         stretched.weather.watch_errors(&stretched.height);
         let longest = *own.weather.allowed_ticks().last().unwrap();
@@ -115,14 +135,14 @@ fn stretched_steps_err_by_no_more_than_is_shown() {
             while stretched.tick < until || !stretched.tick.is_multiple_of(ticks) {
                 own.step();
                 stretched.step();
-                shown = f64::max(shown, stretched.weather.step_errors().present_m_per_s2.unwrap_or(0.0) * HORIZON_SECS);
+                shown = f64::max(shown, stretched.weather.step_errors().present.m_per_s2.unwrap_or(0.0) * HORIZON_SECS);
             }
             let (one, other) = (own.lowest(), stretched.lowest());
             let apart = rms(one.iter().zip(&other).map(|(a, b)| [a[0] - b[0], a[1] - b[1]]));
             let whole = rms(one.into_iter());
             println!("{scene}, every {ticks} instead of {own_ticks} ticks: {apart:.4} m/s of {whole:.2} m/s, shown {shown:.4} m/s");
             assert!(apart <= shown, "{scene}: {apart} m/s with steps of {ticks} ticks, shown {shown} m/s");
-            assert!(apart > 1e-3 * shown, "{scene}: {apart} m/s is hardly anything of the {shown} m/s that are shown");
+            assert!(shown < most * apart, "{scene}: {apart} m/s is hardly anything of the {shown} m/s that are shown");
         }
     }
 }
