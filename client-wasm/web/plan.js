@@ -52,10 +52,15 @@ function showNow({ control, may_set_budget, wind_step_secs, awake_limit, gives_w
 }
 
 function controlLines({ budget_ms, busy_ms, wind_error, wind_tolerance, bend_error_deg, bend_tolerance_deg }) {
-  const lines = [`A tick takes ${busy_ms.toPrecision(3)} ms of ${budget_ms.toPrecision(3)} ms`];
+  const lines = [`A tick takes ${rounded(busy_ms)} ms of ${rounded(budget_ms)} ms`];
   if (wind_error !== null) lines.push(`Expected error of the wind ${(100 * wind_error).toFixed(2)} % of ${(100 * wind_tolerance).toFixed(2)} %`);
   if (bend_tolerance_deg !== null) lines.push(`Expected error of the bend ${bend_error_deg.toFixed(2)}° of ${bend_tolerance_deg.toFixed(2)}°`);
   return lines;
+}
+
+// A number with three digits.
+function rounded(number) {
+  return String(Number(number.toPrecision(3)));
 }
 
 // Sets the time that a tick may take on the server.
@@ -63,7 +68,7 @@ function budgetForm(budget_ms) {
   const form = element("form");
   const label = element("label", "Budget of a tick (ms) ", "line");
   const input = element("input");
-  Object.assign(input, { type: "number", required: true, min: "0.001", max: "1000", step: "any", value: String(Number(budget_ms.toPrecision(3))) });
+  Object.assign(input, { type: "number", required: true, min: "0.001", max: "1000", step: "any", value: rounded(budget_ms) });
   label.append(input);
   const outcome = element("p", "", "aside");
   form.append(label, outcome);

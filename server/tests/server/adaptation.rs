@@ -66,11 +66,12 @@ async fn a_budget_that_no_tick_keeps_makes_all_give_way_and_a_replay_repeats_it(
     assert_eq!(before["control"]["budget_ms"], 1000.0);
 
     assert_eq!(set_budget(&server, r#"{"server_ms": 0.001}"#).await.0, 200);
-    let loaded = until(&server, |now| now["level"] == 5).await;
-    assert_eq!(loaded["gives_way"], json!(LOAD_LEVELS[1..]));
+    // The fewest patches to which the awake ones are limited are more than are awake, so that the last level would change nothing.
+    let loaded = until(&server, |now| now["level"] == 4).await;
+    assert_eq!(loaded["gives_way"], json!(LOAD_LEVELS[1..=4]));
     let decisions = loaded["decisions"].as_array().unwrap();
     let levels: Vec<_> = decisions.iter().filter_map(|decision| decision["level"].as_u64()).filter(|level| *level > 0).collect();
-    assert_eq!(levels, [1, 2, 3, 4, 5]);
+    assert_eq!(levels, [1, 2, 3, 4]);
     let reason = decisions.last().unwrap()["reason"].as_str().unwrap();
     assert!(reason.starts_with("overload: ") && reason.ends_with(" ms a tick, budget 0.001 ms"), "{reason}");
     // The step of the wind changes at the next tick that both steps have in common.
@@ -78,14 +79,14 @@ async fn a_budget_that_no_tick_keeps_makes_all_give_way_and_a_replay_repeats_it(
     until(&server, |now| (now["wind_step_secs"].as_f64().unwrap() / own_secs - 4.0).abs() < 0.01).await;
     // Drives on in less detail; the budget comes back, and so does the detail, one by one.
     assert_eq!(set_budget(&server, r#"{"server_ms": 1000}"#).await.0, 200);
-    until(&server, |now| now["level"] == 4).await;
+    until(&server, |now| now["level"] == 3).await;
     server.stop().await;
 
     let own = find(folder.path()).unwrap();
     let mut player = Player::open_oldest(&own, &demanding()).unwrap().expect("a recording");
     player.advance(u64::MAX);
     let replayed = player.world.snapshot();
-    assert_eq!((replayed.diagnostics.load_level, replayed.decisions.len() as u64), (4, replayed.diagnostics.decisions));
+    assert_eq!((replayed.diagnostics.load_level, replayed.decisions.len() as u64), (3, replayed.diagnostics.decisions));
     let mut resumed = open(Some(&WorldFolder::new(folder.path().to_owned())), &demanding()).unwrap();
     assert_eq!(resumed.world().tick(), player.world.tick());
     assert!(resumed.world().save().encode() == player.world.save().encode(), "the replay has the bits of the world that ran");

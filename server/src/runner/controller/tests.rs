@@ -111,7 +111,7 @@ fn what_gives_way_comes_in_the_stated_order_and_comes_back_in_reverse() {
 #[test]
 fn a_level_that_was_needed_is_kept_for_longer_each_time() {
     // Below 0.6 of the budget with the first level, above it without.
-    let mut plant = Plant { costs_ms: [1.0, 0.0, 0.0], ..Plant::new(0.9, None) };
+    let mut plant = Plant { costs_ms: [1.0, 0.0, 0.0], ..Plant::new(0.95, None) };
     plant.run(600.0);
     let changes = plant.decisions.len();
     assert!((4..40).contains(&changes), "{changes} changes in ten minutes");
@@ -124,7 +124,7 @@ fn a_level_that_was_needed_is_kept_for_longer_each_time() {
 fn calm_wind_is_stepped_rarely_and_stirred_wind_often() {
     let wind = WindDemand { tolerance: 0.05, planned: 0.04, rms_m_per_s: 5.0 };
     assert!((wind.allowed() - 0.03).abs() < 1e-6);
-    let mut plant = Plant::new(2.0, Some(wind));
+    let mut plant = Plant::new(2.5, Some(wind));
     // The error of a step is proportional to its length, and to how much the wind changes.
     let blow = |plant: &mut Plant, per_tick: f32, secs: u32| {
         for _ in 0..secs {
