@@ -6,6 +6,9 @@ use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::fmt;
 
+/// Fewest patches to which the awake ones are limited.
+pub(crate) const LEAST_AWAKE: u32 = 64;
+
 /// Number of the newest decisions that are shown.
 const SHOWN: usize = 16;
 
@@ -89,6 +92,24 @@ pub struct Decision {
     pub level: u8,
     /// Reason.
     pub reason: Reason,
+}
+
+impl Decision {
+    /// What gives way to the load, in words.
+    pub fn gives_way(&self) -> Vec<String> {
+        let Self { detail, unloaded, .. } = self;
+        let mut given_up = Vec::new();
+        if detail.wind_ticks > unloaded.wind_ticks {
+            given_up.push(format!("the wind is stepped every {} ticks instead of {}", detail.wind_ticks, unloaded.wind_ticks));
+        }
+        if detail.publish_divisor > unloaded.publish_divisor {
+            given_up.push("every other publication is left out".to_owned());
+        }
+        if self.level > 0 && detail.awake_limit < unloaded.awake_limit.max(LEAST_AWAKE + 1) {
+            given_up.push(format!("all but {} patches sleep, the farthest from all cameras", detail.awake_limit));
+        }
+        given_up
+    }
 }
 
 impl fmt::Display for Detail {

@@ -224,8 +224,9 @@ fn label(object: &ObjectPose) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::detail::{Decision, Detail, Reason};
     use crate::inspect::Inspector;
-    use crate::snapshot::{PatchCodes, WindFrame};
+    use crate::snapshot::{Diagnostics, PatchCodes, WindFrame};
     use prairie_core::scene::VehicleKind;
     use prairie_core::terrain::grey_png;
     use prairie_core::wire::TurbulenceState;
@@ -267,7 +268,12 @@ mod tests {
             turbulence: TurbulenceState::default(),
             codes: vec![CodeSteps::default().wind_code(3.0); 3 * 32 * 8 * 32],
         });
-        Snapshot { tick, time_secs: tick as f64 / 60.0, objects: vec![car], wind, patches, ..Snapshot::default() }
+        let detail = Detail { wind_ticks: 3, awake_limit: 100, publish_divisor: 1 };
+        let reason = Reason::Relief { busy_ms: 1.0, budget_ms: 2.0 };
+        let decisions = vec![Decision { tick, detail, unloaded: detail, level: 0, reason }];
+        // A decision before each frame.
+        let diagnostics = Diagnostics { decisions: tick / 6 + 1, ..Diagnostics::default() };
+        Snapshot { tick, time_secs: tick as f64 / 60.0, objects: vec![car], wind, patches, decisions, diagnostics, ..Snapshot::default() }
     }
 
     #[test]
@@ -298,6 +304,7 @@ mod tests {
         for entity in in_each_frame.into_iter().map(str::to_owned).chain(metrics) {
             assert_eq!(rows.get(&entity), Some(&kept), "{entity} in {rows:?}");
         }
+        assert_eq!(rows.get("/decisions"), Some(&(kept - 1)), "a decision from before the recording, or one is missing");
         std::fs::remove_file(path).unwrap();
     }
 

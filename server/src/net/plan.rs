@@ -2,7 +2,7 @@
 
 use super::app::App;
 use super::scenes::{answer, read_json, refuse};
-use crate::detail::{Decision, LOAD_LEVELS};
+use crate::detail::Decision;
 use axum::body::Body;
 use axum::extract::State;
 use axum::http::{HeaderMap, StatusCode};
@@ -36,7 +36,7 @@ fn now(app: &App) -> Value {
         "wind_step_secs": diagnostics.wind_step_secs,
         "awake_limit": diagnostics.awake_limit,
         "level": diagnostics.load_level,
-        "gives_way": LOAD_LEVELS.get(1..=diagnostics.load_level as usize).unwrap_or_default(),
+        "gives_way": decisions.last().map(Decision::gives_way).unwrap_or_default(),
         "decisions": decisions.iter().map(decision).collect::<Vec<_>>(),
     })
 }

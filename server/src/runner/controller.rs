@@ -3,7 +3,7 @@
 //! It reads clocks, so its decisions enter the world as commands, which the journal keeps.
 
 use super::load::Load;
-use crate::detail::{Decision, Demands, Detail, DetailRange, LOAD_LEVELS, Reason};
+use crate::detail::{Decision, Demands, Detail, DetailRange, LEAST_AWAKE, LOAD_LEVELS, Reason};
 use crate::snapshot::Diagnostics;
 use serde::Serialize;
 use std::time::Duration;
@@ -21,8 +21,6 @@ const CALM: f32 = 0.5;
 const CALM_SAMPLES: u32 = 2;
 /// Fraction of the budget up to which a stirred wind may be stepped more often than the plan has it.
 const SPARE: f32 = 0.5;
-/// Fewest patches to which the awake ones are limited.
-const LEAST_AWAKE: u32 = 64;
 
 /// State of the controller, for people.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -58,7 +58,7 @@ async fn the_panel_sets_the_budget_and_shows_what_gives_way() -> Result<()> {
     browser
         .evaluate("(document.querySelector('#plan-now input').value = '0.001', document.querySelector('#plan-now form').requestSubmit())")
         .await?;
-    browser.until("document.getElementById('plan-now').innerText.includes('the wind is stepped a quarter as often')").await?;
+    browser.until("document.getElementById('plan-now').innerText.includes('the wind is stepped every 12 ticks instead of 3')").await?;
     let decisions = browser.evaluate("document.getElementById('plan-now').innerText").await?;
     ensure!(
         decisions.as_str().is_some_and(|text| text.contains("overload: ") && text.contains("budget 0.001 ms → wind stepped every")),
