@@ -18,6 +18,10 @@ const INSTALL: &str = "The browser tests drive a real Chromium through WebDriver
 
 const START_LIMIT: Duration = Duration::from_secs(60);
 
+/// Chromedriver listens on one port for IPv6 and IPv4; another program may have taken the second one, which it does not try again by itself.
+const PORT_TAKEN: &str = "port not available";
+const ATTEMPTS: u32 = 5;
+
 /// A running chromedriver in a process group of its own. Dropping it ends the whole group, browsers included, and removes its files.
 #[derive(Debug)]
 pub struct Chromedriver {
@@ -34,6 +38,16 @@ impl Chromedriver {
     /// # Errors
     /// When chromedriver is not installed (the message says what to install), or reports no port within a minute.
     pub async fn start() -> Result<Self> {
+        let mut attempt = 1;
+        loop {
+            match Self::start_once().await {
+                Err(error) if attempt < ATTEMPTS && error.to_string().contains(PORT_TAKEN) => attempt += 1,
+                outcome => return outcome,
+            }
+        }
+    }
+
+    async fn start_once() -> Result<Self> {
         let files = tempfile::Builder::new().prefix("prairie-browser-").tempdir().context("no directory for the browser's profile")?;
         let log = File::create(files.path().join(LOG))?;
         let program = on_path(&["chromedriver"]).context(INSTALL)?;

@@ -179,19 +179,19 @@ fn wind_conflicts(plan: &WindPlan, Demand { tolerance, limit_ms }: Demand) -> Ve
             Some(found) => format!(
                 "`accuracy.wind` = {demanded} needs `budget.server_ms` = {:.4}, and the budget, half a tick if none is stated, is {}: the accuracy gives way, with an expected error of {}",
                 found.ms_per_tick,
-                limit_ms.unwrap_or_default(),
+                limit_ms.unwrap_or_default() as f32,
                 percent(chosen.error)
             ),
             None => format!(
-                "`accuracy.wind` = {demanded} is held by none of the settings that the scene leaves open: the best have an expected error of {}",
+                "`accuracy.wind` = {demanded} is held by none of the settings that the scene leaves open: the chosen ones have an expected error of {}",
                 percent(chosen.error)
             ),
         });
     }
     if let Some(limit_ms) = limit_ms.filter(|limit_ms| chosen.ms_per_tick > *limit_ms) {
         conflicts.push(format!(
-            "`budget.server_ms` = {limit_ms} is less than the cheapest of the settings that the scene leaves open costs, {:.4}: the budget gives way",
-            chosen.ms_per_tick
+            "`budget.server_ms` = {} is less than the cheapest of the settings that the scene leaves open costs, {:.4}: the budget gives way",
+            limit_ms as f32, chosen.ms_per_tick
         ));
     }
     conflicts
