@@ -88,7 +88,7 @@ pub struct Decision {
     pub detail: Detail,
     /// The detail if nothing gave way to the load. Its limit of awake patches is their number before the load limited them.
     pub unloaded: Detail,
-    /// How much gives way to the load: a place in [`LOAD_LEVELS`](LOAD_LEVELS).
+    /// How much gives way to the load: a place in [`LOAD_LEVELS`].
     pub level: u8,
     /// Reason.
     pub reason: Reason,

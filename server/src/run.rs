@@ -131,10 +131,15 @@ pub(crate) async fn run_with_menu(
     wait_for_sessions(&client_slots, &pending_slots, config.limits).await;
     let joined = tokio::task::spawn_blocking(move || (runner.stop(), stream.join())).await;
     let recorded = outcome_of(recording).await;
-    match joined {
-        Ok((true, true)) => outcome.and(recorded.map_err(RunError::Incomplete)),
-        Ok((true, false)) => Err(RunError::StreamStopped),
-        _ => Err(RunError::WorldStopped),
+    end_of_run(outcome, joined.unwrap_or_default(), recorded)
+}
+
+/// The outcome of a run, whose world and stream have ended without a panic or with one.
+fn end_of_run(outcome: Result<(), RunError>, ended_well: (bool, bool), recorded: Result<(), InspectError>) -> Result<(), RunError> {
+    match ended_well {
+        (true, true) => outcome.and(recorded.map_err(RunError::Incomplete)),
+        (true, false) => Err(RunError::StreamStopped),
+        (false, _) => Err(RunError::WorldStopped),
     }
 }
 

@@ -167,16 +167,21 @@ impl ClientState {
             }
             return None;
         }
+        self.reported = applied;
+        self.sent_broken = broken.map_or(self.sent_broken, |(count, _)| count);
+        self.note_sent(publication, number, wind);
+        self.hold(patches);
+        Some(bytes)
+    }
+
+    /// Notes what every frame carries, and the number of its wind.
+    fn note_sent(&mut self, publication: &Publication<'_>, number: u32, wind: Option<u32>) {
         self.following.note_sent(publication.steps, publication.now);
         self.frame = number;
         self.sent_poses = Some((publication.poses_version, publication.now));
         self.held_announced = publication.announced.each_ref().map(|announced| announced.version);
-        self.reported = applied;
-        self.sent_broken = broken.map_or(self.sent_broken, |(count, _)| count);
         self.sent_wind = if wind.is_some() { Some(publication.now) } else { self.sent_wind };
         self.held_wind = wind.or(self.held_wind);
-        self.hold(patches);
-        Some(bytes)
     }
 
     /// Whether the poses are those that were sent last, a moment ago, and no wind blows: with wind, frames come so often that the client would take the time
