@@ -52,11 +52,8 @@ fn demands_that_cannot_be_met_are_told_with_numbers() {
     let tight = 0.7 * free.chosen.ms_per_tick as f32;
     let (plan, wind) = planned(&small("10 %", tight));
     assert!(wind.chosen.ms_per_tick <= f64::from(tight) && wind.chosen.error > 0.1, "{wind:?}");
-    let needed = format!(
-        "needs `budget.server_ms` = {:.4}, and the budget, half a tick if none is stated, is {}",
-        free.chosen.ms_per_tick,
-        f64::from(tight)
-    );
+    let needed =
+        format!("needs `budget.server_ms` = {:.4}, and the budget, half a tick if none is stated, is {}", free.chosen.ms_per_tick, tight);
     assert!(plan.conflicts[0].contains(&needed), "{:?} {needed}", plan.conflicts);
     let (plan, _) = planned(&small("", 1e-9));
     assert!(plan.conflicts[0].contains("the budget gives way"), "{:?}", plan.conflicts);
