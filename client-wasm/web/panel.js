@@ -262,7 +262,7 @@ export class Panel {
     for (const id of ["grids", "raised", "shadows"]) byId(id).setAttribute("aria-pressed", String(state[id]));
     // Without a device, such as between its loss and its replacement, there is no GPU time.
     write("work", state.cpu_ms === null || state.gpu_ms === null ? "–" : `CPU ${state.cpu_ms.toFixed(1)} · GPU ${state.gpu_ms.toFixed(1)} ms`);
-    write("detail", state.automatic ? `${state.level.toFixed(1)} of ${state.highest_level} · target ${state.budget_ms.toFixed(0)} ms` : state.quality);
+    write("detail", state.automatic ? `${state.level.toFixed(1)} of ${Number(state.highest_level.toFixed(1))} · target ${state.budget_ms.toFixed(0)} ms` : state.quality);
     write("resolution", state.rendered_px ? state.rendered_px.join(" × ") : "–");
     byId("fallback").hidden = !state.fallbacks.length;
     write("fallback", state.fallbacks.join(" "));

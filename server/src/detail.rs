@@ -150,6 +150,8 @@ pub struct Demands {
     pub planned_bend_deg: f32,
     /// Time of a tick on the server (ms).
     pub server_ms: f32,
+    /// Mean data to each client (kbit/s); `None` where only the server limits it.
+    pub kbit_per_s: Option<f32>,
 }
 
 /// Errors of the wind as fractions of its root mean square.

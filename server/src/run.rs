@@ -152,7 +152,9 @@ fn timing(config: &Config) -> Timing {
 /// Starts the stream to the clients, which are the only audience of the grass unless there is a recording, which shows all patches.
 fn start_stream(config: &Config, runner: &Runner, clients: Arc<Clients>) -> std::io::Result<(Stream, Arc<Counters>)> {
     let layout = PatchLayout::from(&config.scene.scene.patches);
-    let streamer = Streamer::new(layout, config.limits.send, timing(config).published_hz()).requesting_states_by(runner.state_request());
+    let of_scene = config.scene.explanation.demands.and_then(|demands| demands.kbit_per_s);
+    let send = config.limits.send.within_kbit_per_s(of_scene);
+    let streamer = Streamer::new(layout, send, timing(config).published_hz()).requesting_states_by(runner.state_request());
     let counters = streamer.counters();
     let audience = config.rerun.is_none().then(|| runner.audience());
     let stream = stream::start(streamer, runner.published(), clients, runner.commands(), runner.attendance(), audience)?;

@@ -219,6 +219,9 @@ impl App {
             self.keep_link(camera, now_secs);
         }
         self.replace_lost_device(now_secs);
+        if let Some(decoded) = self.mirror.decoded_scene() {
+            self.settings.follow(decoded.scene());
+        }
         self.update_renderer();
         self.update_status();
     }

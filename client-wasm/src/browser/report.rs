@@ -4,7 +4,6 @@ use super::app::App;
 use super::connection::ConnectionState;
 use super::gpu_canvas::GpuCanvas;
 use crate::hearing::{HeardEngine, Hearing, hear};
-use crate::render::Quality;
 use crate::rig::Rig;
 use crate::state::{DecodedScene, Past};
 use prairie_core::race::StartLight;
@@ -156,7 +155,7 @@ impl App {
             "budget_ms": self.settings.budget_secs().map(|budget_secs| budget_secs * 1e3),
             "level": self.settings.rung().level,
             "rendered_px": self.gpu.as_ref().and_then(GpuCanvas::rendered_px),
-            "highest_level": Quality::FINEST.level(),
+            "highest_level": self.settings.highest_level(),
             "order": self.settings.option_names()[0],
             "far": self.settings.option_names()[1],
             "raised": self.settings.switches()[0],

@@ -1,17 +1,36 @@
 //! Render settings chosen by the user: quality, render options, hour of the day, and side-by-side comparison.
 
-use crate::automatic::AutomaticQuality;
+use crate::automatic::{Aim, AutomaticQuality};
 use crate::budget::FrameTime;
 use crate::ladder::Rung;
 use crate::render::{BlendOrder, DeviceClass, FarPlants, Quality, RenderOptions, SideOptions, Split};
-use prairie_core::scene::Light;
+use prairie_core::scene::{Light, Scene};
 use serde::Deserialize;
+use std::ops::RangeInclusive;
 
 /// Name of automatic quality, which a frame time budget controls.
 pub(super) const AUTOMATIC: &str = "auto";
 
-/// Frame time budget of automatic quality (ms): on a GPU, and on a software adapter.
+/// Frame time budget of automatic quality (ms) where neither address nor scene has one: on a GPU, and on a software adapter.
 const BUDGET_MS: [f32; 2] = [16.7, 100.0];
+
+/// Allowed frame time budgets (ms).
+const ALLOWED_MS: RangeInclusive<f32> = 1.0..=1000.0;
+
+/// What a scene wishes of automatic quality.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct SceneWish {
+    /// Frame time budget (ms); 0 if there is none.
+    client_ms: f32,
+    /// Highest level of detail.
+    highest_detail: f32,
+}
+
+impl Default for SceneWish {
+    fn default() -> Self {
+        Self { client_ms: 0.0, highest_detail: Quality::FINEST.level() }
+    }
+}
 
 /// Kind of device, as detected by the page. It determines presets and time budget of automatic quality.
 #[derive(Clone, Copy, Debug, Deserialize)]
@@ -33,9 +52,12 @@ impl Device {
         }
     }
 
-    fn budget_secs(self) -> f32 {
-        let budget_ms = self.budget_ms.filter(|budget_ms| (1.0..=1000.0).contains(budget_ms));
-        budget_ms.unwrap_or(BUDGET_MS[usize::from(self.is_software)]) / 1e3
+    /// What automatic quality keeps here in a scene: the budget of the address, or else that of the scene, or else that of the device.
+    fn aim(self, wish: SceneWish) -> Aim {
+        let of_address = self.budget_ms.filter(|budget_ms| ALLOWED_MS.contains(budget_ms));
+        let of_scene = (wish.client_ms > 0.0).then(|| wish.client_ms.clamp(*ALLOWED_MS.start(), *ALLOWED_MS.end()));
+        let budget_ms = of_address.or(of_scene).unwrap_or(BUDGET_MS[usize::from(self.is_software)]);
+        Aim { budget_secs: budget_ms / 1e3, highest_level: wish.highest_detail }
     }
 }
 
@@ -43,6 +65,7 @@ impl Device {
 #[derive(Clone, Debug)]
 pub(super) struct Settings {
     device: Device,
+    scene: SceneWish,
     preset: Preset,
     options: RenderOptions,
     hour: Option<f32>,
@@ -66,8 +89,10 @@ struct Comparison {
 impl Settings {
     /// The first quality of `names` that exists, automatic quality if none does, and default render options.
     pub(super) fn new(names: &[Option<String>], device: Device) -> Self {
-        let preset = names.iter().flatten().find_map(|name| Preset::from_name(name, device)).unwrap_or_else(|| Preset::automatic(device));
-        Self { device, preset, options: RenderOptions::default(), hour: None, comparison: None }
+        let scene = SceneWish::default();
+        let named = names.iter().flatten().find_map(|name| Preset::from_name(name, device.class(), device.aim(scene)));
+        let preset = named.unwrap_or_else(|| Preset::automatic(device.class(), device.aim(scene)));
+        Self { device, scene, preset, options: RenderOptions::default(), hour: None, comparison: None }
     }
 
     /// Names of all qualities, automatic quality first.
@@ -77,9 +102,20 @@ impl Settings {
 
     /// Sets the quality by name, [`AUTOMATIC`] included. An unknown name changes nothing and returns false.
     pub(super) fn set_quality(&mut self, name: &str) -> bool {
-        let Some(preset) = Preset::from_name(name, self.device) else { return false };
+        let Some(preset) = Preset::from_name(name, self.device.class(), self.device.aim(self.scene)) else { return false };
         self.preset = preset;
         true
+    }
+
+    /// Lets automatic quality keep what a scene wishes. It begins anew where that differs from the scene before.
+    pub(super) fn follow(&mut self, scene: &Scene) {
+        let wish = SceneWish { client_ms: scene.budget.client_ms, highest_detail: scene.plants.highest_detail };
+        if wish != self.scene {
+            self.scene = wish;
+            if matches!(self.preset, Preset::Automatic(_)) {
+                self.preset = Preset::automatic(self.device.class(), self.device.aim(wish));
+            }
+        }
     }
 
     /// Name of the chosen quality, [`AUTOMATIC`] included.
@@ -101,6 +137,14 @@ impl Settings {
         match &self.preset {
             Preset::Fixed(_) => None,
             Preset::Automatic(automatic) => Some(automatic.budget_secs()),
+        }
+    }
+
+    /// Highest level of detail: of the scene for automatic quality, which uses no higher one, else of all presets.
+    pub(super) fn highest_level(&self) -> f32 {
+        match &self.preset {
+            Preset::Fixed(_) => Quality::FINEST.level(),
+            Preset::Automatic(_) => self.scene.highest_detail,
         }
     }
 
@@ -195,13 +239,13 @@ impl Settings {
 
 impl Preset {
     /// The quality of this name, [`AUTOMATIC`] included.
-    fn from_name(name: &str, device: Device) -> Option<Self> {
-        let automatic = || (name == AUTOMATIC).then(|| Self::automatic(device));
+    fn from_name(name: &str, class: DeviceClass, aim: Aim) -> Option<Self> {
+        let automatic = || (name == AUTOMATIC).then(|| Self::automatic(class, aim));
         Quality::from_name(name).map(Self::Fixed).or_else(automatic)
     }
 
-    fn automatic(device: Device) -> Self {
-        Self::Automatic(Box::new(AutomaticQuality::new(device.class(), device.budget_secs())))
+    fn automatic(class: DeviceClass, aim: Aim) -> Self {
+        Self::Automatic(Box::new(AutomaticQuality::new(class, aim)))
     }
 
     fn quality(&self) -> Quality {

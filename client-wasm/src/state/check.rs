@@ -64,6 +64,7 @@ fn check_world(scene: &Scene) -> Result<(), MirrorError> {
     for segments in plants.blade_segments {
         within("plants.blade_segments", segments as f32, 0.0, 12.0)?;
     }
+    within("plants.highest_detail", plants.highest_detail, 0.0, 3.0)?;
     within("plants.height_variation", plants.height_variation, 0.0, 0.9)?;
     within("plants.width_m", plants.width_m, 0.001, 0.5)?;
     within("plants.flowers_per_m2", plants.flowers_per_m2, 0.0, 50.0)?;

@@ -1,10 +1,11 @@
 //! Measures the times of the wind's methods on this machine.
 
 use super::bend_pilot::ns_per_cell_step;
-use super::fronts::{Fronts, bend_row, diffusion_row, pressure_row};
+use super::blade_pilot::ns_per_step;
+use super::fronts::{Fronts, bend_row, blade_row, diffusion_row, pressure_row};
 use super::settings::TOLERANCES;
 use prairie_core::bend::Scheme;
-use prairie_core::scene::{WindDiffusion, WindPressure};
+use prairie_core::scene::{BladeIntegrator, WindDiffusion, WindPressure};
 use prairie_wind::pressure::{Effort, IterativeMethod};
 use prairie_wind::{Advection, Air, Boundary, Canopy, Config, Diffusion, Dust, Method, Pressure, TimeScheme};
 use std::time::Instant;
@@ -44,6 +45,10 @@ pub fn calibrate(mut show: impl FnMut(usize, usize)) -> Fronts {
     for scheme in [Scheme::Substepped, Scheme::Implicit, Scheme::Verlet] {
         let ns = (ns_per_cell_step(scheme) * 100.0).round() / 100.0;
         fronts.ns.insert(bend_row(scheme), vec![ns; SIDES.len()]);
+    }
+    for &integrator in BladeIntegrator::ALL {
+        let ns = (ns_per_step(integrator) * 10.0).round() / 10.0;
+        fronts.ns.insert(blade_row(integrator), vec![ns; SIDES.len()]);
     }
     fronts
 }

@@ -1,5 +1,6 @@
 //! Explains a scene and its plan.
 
+use super::client_rows::{blades_row, picture_row, stream_row};
 use super::fronts::{Fronts, FrontsInUse};
 use super::{Plan, Progress, is_demanded};
 use crate::detail::{Demands, WindDemand};
@@ -23,7 +24,7 @@ pub(super) fn explain_plan(scene: &OpenScene, plan: &Plan, used: &FrontsInUse) -
     Explanation {
         scene: scene.loaded.name.clone(),
         is_planned: is_demanded(own),
-        rows: vec![wind_row(scene, plan), bend_row(scene, plan), plants_row(scene), objects_row(scene)],
+        rows: rows(scene, plan),
         left_out: left_out(own),
         not_planned: not_planned(own),
         sources: sources(plan, used),
@@ -32,9 +33,21 @@ pub(super) fn explain_plan(scene: &OpenScene, plan: &Plan, used: &FrontsInUse) -
     }
 }
 
+fn rows(scene: &OpenScene, plan: &Plan) -> Vec<Row> {
+    let parts = [
+        Some(wind_row(scene, plan)),
+        Some(bend_row(scene, plan)),
+        Some(stream_row(scene, plan)),
+        Some(blades_row(scene, plan.blades.as_ref())),
+        plan.picture.as_ref().map(|picture| picture_row(scene, picture)),
+        Some(objects_row(scene)),
+    ];
+    parts.into_iter().flatten().collect()
+}
+
 /// What a run of the planned scene has to keep: its tolerances, and its budget or half a tick.
 fn demands(own: &Scene, plan: &Plan) -> Demands {
-    let (tolerances, [server_ms, ..]) = (own.accuracy.tolerances(), own.budget.limits());
+    let (tolerances, [server_ms, _, kbit_per_s]) = (own.accuracy.tolerances(), own.budget.limits());
     let wind = plan.wind.as_ref().ok().zip(tolerances.wind).map(|(wind, tolerance)| WindDemand {
         tolerance: tolerance as f32,
         planned: wind.chosen.error as f32,
@@ -45,11 +58,12 @@ fn demands(own: &Scene, plan: &Plan) -> Demands {
         bend_deg: tolerances.bend_deg.map(|deg| deg as f32),
         planned_bend_deg: plan.bend.measured_deg.map_or(0.0, |_| plan.bend.error_deg() as f32),
         server_ms: server_ms.map_or(500.0 / own.tick_hz, |ms| ms as f32),
+        kbit_per_s: kbit_per_s.map(|kbit_per_s| kbit_per_s as f32),
     }
 }
 
 /// The stated fields of a section.
-fn stated(scene: &OpenScene, sections: &[&str]) -> Vec<String> {
+pub(super) fn stated(scene: &OpenScene, sections: &[&str]) -> Vec<String> {
     let is_in = |path: &&String| sections.iter().any(|section| path.starts_with(&format!("{section}.")));
     scene.stated.iter().filter(is_in).cloned().collect()
 }
@@ -109,23 +123,6 @@ fn bend_row(scene: &OpenScene, plan: &Plan) -> Row {
     }
 }
 
-fn plants_row(scene: &OpenScene) -> Row {
-    let own = &scene.loaded.scene;
-    let method = match own.plants.cover {
-        PlantCover::Shells => format!("{} shells", own.shells.layers),
-        _ => format!("blades of {} segments that lag, moved by `{}`", own.grass.segments, own.plants.integrator.word()),
-    };
-    let stated = stated(scene, &["plants", "shells"]);
-    Row {
-        part: "blades and their picture".to_owned(),
-        method,
-        error: "not measured for a scene".to_owned(),
-        server_ms_per_tick: None,
-        stated,
-        planned: Vec::new(),
-    }
-}
-
 fn objects_row(scene: &OpenScene) -> Row {
     let objects = &scene.loaded.scene.objects;
     let kinds = VehicleKind::ALL.map(|kind| kind.name()).join(", ");
@@ -169,14 +166,16 @@ fn left_out(scene: &Scene) -> Vec<String> {
 /// Settings that no plan chooses, and demands that no plan looks at.
 fn not_planned(scene: &Scene) -> Vec<String> {
     let demands = [
-        (!scene.accuracy.blades.is_empty(), "`accuracy.blades`: the error of blades is not measured for a scene"),
-        (scene.accuracy.picture > 0.0, "`accuracy.picture`: the error of a picture is not measured for a scene"),
-        (scene.budget.client_ms > 0.0, "`budget.client_ms`: the time of a picture depends on the client, whose quality adapts by itself"),
-        (scene.budget.kbit_per_s > 0.0, "`budget.kbit_per_s`: the data depends on what moves; `prairie serve --client-kbit` limits it"),
+        (
+            !scene.accuracy.blades.is_empty() && scene.plants.cover != PlantCover::Blades,
+            "`accuracy.blades`: with `plants.cover = \"shells\"` there are no single blades",
+        ),
+        (scene.accuracy.picture > 0.0, "`accuracy.picture` on other cards and sizes: its errors are those of ten views of built-in scenes"),
     ];
     let always = [
         "vertical cells of the wind: the grass feels the lowest cells, so that their height is a part of the model",
-        "`grass.segments`, `plants.integrator`: their error is not measured for a scene",
+        "`grass.segments`: it is another model, not another error",
+        "`wind.cells` for `budget.kbit_per_s`: only codes become coarser",
         "`bend.seams`, `bend.object_contact` and their like: they are other models, not other errors",
         "`wind.dust.advection`: the error is that of the wind alone",
     ];

@@ -2,13 +2,13 @@
 
 use super::settings::WindSettings;
 use prairie_core::bend::Scheme;
-use prairie_core::scene::{Scene, WindDiffusion, WindMethod, WindPressure, WindTime};
+use prairie_core::scene::{BladeIntegrator, Scene, WindDiffusion, WindMethod, WindPressure, WindTime};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Format of the file; other numbers are refused.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 /// Largest file (bytes).
 const FILE_LIMIT: u64 = 1 << 20;
 
@@ -27,7 +27,7 @@ pub struct Fronts {
     /// Numbers of cells of the boxes, ascending.
     pub cells: Vec<f64>,
     /// Time per cell and sub-step (ns) in each box: `step/ADVECTION/TIME` and `step/stable-fluids` of a whole step with explicit diffusion and the direct pressure
-    /// solver; `bend/SCHEME` of a cell of the bend field in any box; all others of the difference to the first.
+    /// solver; `bend/SCHEME` of a cell of the bend field and `blade/INTEGRATOR` of a blade in any box; all others of the difference to the first.
     pub ns: BTreeMap<String, Vec<f64>>,
 }
 
@@ -126,6 +126,11 @@ impl Fronts {
         Some(self.ns.get(&bend_row(scheme))?.first()? * cell_steps / 1e6)
     }
 
+    /// Time of a step of a blade (ns); on a graphics card only the ratios of the integrators mean something. 0 for one that is not measured.
+    pub fn blade_ns(&self, integrator: BladeIntegrator) -> f64 {
+        self.ns.get(&blade_row(integrator)).and_then(|ns| ns.first().copied()).unwrap_or_default()
+    }
+
     /// Whether the time of a pressure solver is known: Jacobi and Gauss–Seidel, which no plan chooses, are not measured.
     pub fn knows(pressure: WindPressure) -> bool {
         !matches!(pressure, WindPressure::Jacobi | WindPressure::GaussSeidel)
@@ -153,6 +158,11 @@ impl Fronts {
 /// Row of a scheme of the bend field.
 pub(super) fn bend_row(scheme: Scheme) -> String {
     format!("bend/{}", scheme.word())
+}
+
+/// Row of an integrator of blades.
+pub(super) fn blade_row(integrator: BladeIntegrator) -> String {
+    format!("blade/{}", integrator.word())
 }
 
 /// Row of a diffusion scheme.
@@ -200,7 +210,7 @@ mod tests {
                 "it is of b there, 2 threads, and this machine is a here, 4 threads",
             ),
             (Fronts { version: "0.0.9".to_owned(), ..own.clone() }, "it is of version 0.0.9, and this is "),
-            (Fronts { format: 7, ..own.clone() }, "its format is 7; allowed: 1"),
+            (Fronts { format: 7, ..own.clone() }, "its format is 7; allowed: 2"),
             (Fronts { cells: vec![2.0, 1.0], ..own.clone() }, "its numbers of cells do not ascend"),
             (Fronts { ns: [("dust".to_owned(), vec![])].into(), ..own }, "its row `dust` is not 1 finite numbers"),
         ];

@@ -5,22 +5,30 @@
 
 mod bend;
 mod bend_pilot;
+mod blade_pilot;
+mod blades;
 mod cache;
 mod calibrate;
+mod client_rows;
+mod conflicts;
 mod explain;
 pub mod fronts;
+mod picture;
 mod progress;
 mod settings;
 mod wind;
 
 pub use bend::BendPlan;
+pub use blades::BladePlan;
 pub use calibrate::calibrate;
 pub use explain::explain;
+pub use picture::PicturePlan;
 pub use progress::{Line, Progress, Silent};
 pub use settings::WindSettings;
 pub use wind::{Measured, WindPlan};
 
 use crate::scenes::{Explanation, LoadedScene, OpenScene};
+use blade_pilot::Winds;
 use fronts::{Fronts, FrontsInUse};
 use prairie_core::scene::{Accuracy, Budget, Scene, parse};
 use serde::{Deserialize, Serialize};
@@ -36,6 +44,12 @@ pub struct Plan {
     pub wind: Result<WindPlan, String>,
     /// Of the bend field and its stream.
     pub bend: BendPlan,
+    /// Of the blades; `None` where no single blades are drawn, or nothing is measured.
+    #[serde(default)]
+    pub blades: Option<BladePlan>,
+    /// Of the picture; `None` where nothing is measured.
+    #[serde(default)]
+    pub picture: Option<PicturePlan>,
     /// Demands that cannot be met, each with its numbers and what gives way.
     pub conflicts: Vec<String>,
 }
@@ -53,14 +67,15 @@ impl Plan {
             planned: Vec::new(),
             conflict: None,
         };
-        Self { wind: Err(format!("`prairie explain {}` measures it", scene.loaded.name)), bend, conflicts: Vec::new() }
+        let wind = Err(format!("`prairie explain {}` measures it", scene.loaded.name));
+        Self { wind, bend, blades: None, picture: None, conflicts: Vec::new() }
     }
 }
 
 /// Whether a scene demands something that is planned.
 pub fn is_demanded(scene: &Scene) -> bool {
-    let Accuracy { wind, bend, .. } = &scene.accuracy;
-    !(wind.is_empty() && bend.is_empty()) || scene.budget.server_ms > 0.0
+    let (Accuracy { wind, bend, blades, picture, .. }, Budget { server_ms, kbit_per_s, .. }) = (&scene.accuracy, scene.budget);
+    [wind, bend, blades].iter().any(|tolerance| !tolerance.is_empty()) || [*picture, server_ms, kbit_per_s].iter().any(|limit| *limit > 0.0)
 }
 
 impl OpenScene {
@@ -93,15 +108,19 @@ impl OpenScene {
     pub fn plan_anew(&self, fronts: &Fronts, progress: &mut dyn Progress) -> Plan {
         let LoadedScene { scene, height, cover, .. } = &self.loaded;
         let tolerances = scene.accuracy.tolerances();
-        let [limit_ms, ..] = scene.budget.limits();
+        let [limit_ms, _, limit_kbit_per_s] = scene.budget.limits();
         // A tolerance without a budget may take half a tick: the server has other things to do.
         let half_tick_ms = tolerances.wind.map(|_| f64::from(500.0 / scene.tick_hz));
-        let demand = Demand { tolerance: tolerances.wind, limit_ms: limit_ms.or(half_tick_ms) };
+        let demand = Demand { tolerance: tolerances.wind, limit_ms: limit_ms.or(half_tick_ms), limit_kbit_per_s };
         let wind = wind::plan(scene, (height, cover), &self.stated, demand, fronts, progress).map_err(|error| error.to_string());
+        let (wind, winds) = wind.map_or_else(|reason| (Err(reason), Winds::default()), |(plan, winds)| (Ok(plan), winds));
         progress.start("the drives through the grass");
         let bend = bend::plan(&self.loaded, &self.stated, tolerances.bend_deg, fronts);
-        let conflicts = wind.iter().flat_map(|plan| wind_conflicts(plan, demand)).chain(bend.conflict.clone()).collect();
-        Plan { wind, bend, conflicts }
+        let blades = blades::plan(scene, &self.stated, tolerances.blades, &winds, fronts);
+        let picture = picture::plan(scene, &self.stated, tolerances.picture);
+        let others = [bend.conflict.clone(), blades.as_ref().and_then(|plan| plan.conflict.clone()), picture.conflict.clone()];
+        let conflicts = wind.iter().flat_map(|plan| conflicts::of_wind(plan, demand)).chain(others.into_iter().flatten()).collect();
+        Plan { wind, bend, blades, picture: Some(picture), conflicts }
     }
 
     /// The explanation of a plan.
@@ -109,11 +128,13 @@ impl OpenScene {
         Arc::new(explain::explain_plan(self, plan, used))
     }
 
-    /// The scene with its plan, without tolerances and budgets: an ordinary scene.
+    /// The scene with its plan, without tolerances and budgets but the frame time of clients: an ordinary scene.
     pub fn resolved(self, plan: &Plan) -> LoadedScene {
         let Self { mut loaded, .. } = self;
         if is_demanded(&loaded.scene) {
             plan.bend.apply(&mut loaded.scene);
+            plan.blades.iter().for_each(|blades| blades.apply(&mut loaded.scene));
+            plan.picture.iter().for_each(|picture| picture.apply(&mut loaded.scene));
             if let Ok(WindPlan { own, chosen, wind_error_m_per_s, .. }) = &plan.wind {
                 if chosen.settings != own.settings {
                     loaded.scene = chosen.settings.applied_to(&loaded.scene);
@@ -121,7 +142,7 @@ impl OpenScene {
                 loaded.scene.stream.wind_error_m_per_s = *wind_error_m_per_s;
             }
         }
-        (loaded.scene.accuracy, loaded.scene.budget) = (Accuracy::default(), Budget::default());
+        remove_demands(&mut loaded.scene);
         loaded
     }
 
@@ -156,45 +177,15 @@ impl OpenScene {
 
     fn resolved_without_plan(mut self) -> LoadedScene {
         self.loaded.explanation = Arc::new(explain::explain_unmeasured(&self));
-        // What remains asks for nothing that is planned.
-        (self.loaded.scene.accuracy, self.loaded.scene.budget) = (Accuracy::default(), Budget::default());
+        remove_demands(&mut self.loaded.scene);
         self.loaded
     }
 }
 
-/// Demands on the wind that its plan does not meet, with what they would take.
-fn wind_conflicts(plan: &WindPlan, Demand { tolerance, limit_ms }: Demand) -> Vec<String> {
-    let WindPlan { chosen, within_tolerance, .. } = plan;
-    let mut conflicts = Vec::new();
-    if plan.is_cut {
-        conflicts.push(format!(
-            "the search for the wind's settings ended after {} pilot runs: cheaper or more accurate ones may exist",
-            plan.runs[1]
-        ));
-    }
-    let percent = |error: f64| format!("{:.3} %", 100.0 * error);
-    if let Some(tolerance) = tolerance.filter(|tolerance| chosen.error > *tolerance) {
-        let demanded = percent(tolerance);
-        conflicts.push(match within_tolerance {
-            Some(found) => format!(
-                "`accuracy.wind` = {demanded} needs `budget.server_ms` = {:.4}, and the budget, half a tick if none is stated, is {}: the accuracy gives way, with an expected error of {}",
-                found.ms_per_tick,
-                limit_ms.unwrap_or_default() as f32,
-                percent(chosen.error)
-            ),
-            None => format!(
-                "`accuracy.wind` = {demanded} is held by none of the settings that the scene leaves open: the chosen ones have an expected error of {}",
-                percent(chosen.error)
-            ),
-        });
-    }
-    if let Some(limit_ms) = limit_ms.filter(|limit_ms| chosen.ms_per_tick > *limit_ms) {
-        conflicts.push(format!(
-            "`budget.server_ms` = {} is less than the cheapest of the settings that the scene leaves open costs, {:.4}: the budget gives way",
-            limit_ms as f32, chosen.ms_per_tick
-        ));
-    }
-    conflicts
+/// Removes all tolerances and budgets but the frame time, which clients keep themselves.
+fn remove_demands(scene: &mut Scene) {
+    scene.accuracy = Accuracy::default();
+    scene.budget = Budget { client_ms: scene.budget.client_ms, ..Budget::default() };
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! The plan of the wind: the cheapest settings within a tolerance, or the most accurate ones within a budget.
 
+use super::blade_pilot::Winds;
 use super::fronts::Fronts;
 use super::progress::Progress;
 use super::settings::{WindSettings, candidates};
@@ -18,6 +19,10 @@ const WORK_LIMIT: f64 = 1e10;
 const EQUAL: f64 = 1.02;
 /// Allowed errors of codes of the wind (m/s).
 const CODE_M_PER_S: [f64; 2] = [0.01, 1.0];
+/// Ratio of the errors of codes that are tried one after the other.
+const CODE_RATIO: f32 = 1.19;
+/// Places whose wind bends the blades of a pilot run.
+const PLACES: usize = 16;
 
 /// Settings with their measured error and their cost.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -60,8 +65,14 @@ pub struct WindPlan {
     /// Whether the search ended since its runs had done all the work that a plan may take.
     pub is_cut: bool,
     /// Largest error of a code of the wind (m/s) with the chosen settings: where the plan sets it, half of what the tolerance leaves at the root mean square of
-    /// the wind, whose codes then have 0.29 of the tolerance.
+    /// the wind, whose codes then have 0.29 of the tolerance; coarser where the data must be less.
     pub wind_error_m_per_s: f32,
+    /// Data of the wind's frames to each client (kbit/s), dust apart; `None` where it is not measured.
+    #[serde(default)]
+    pub kbit_per_s: Option<f64>,
+    /// Error before the codes were made coarser for the data; `None` where they were not.
+    #[serde(default)]
+    pub error_of_finer_codes: Option<f64>,
 }
 
 /// Demands on the wind.
@@ -69,6 +80,7 @@ pub struct WindPlan {
 pub(super) struct Demand {
     pub(super) tolerance: Option<f64>,
     pub(super) limit_ms: Option<f64>,
+    pub(super) limit_kbit_per_s: Option<f64>,
 }
 
 /// Pilot runs of a scene, each run once.
@@ -125,7 +137,7 @@ pub(super) fn plan(
     demand: Demand,
     fronts: &Fronts,
     progress: &mut dyn Progress,
-) -> Result<WindPlan, WeatherError> {
+) -> Result<(WindPlan, Winds), WeatherError> {
     progress.start("the reference run of the wind");
     let pilot = WindPilot::new(scene, height, cover)?;
     let mut coded = scene.clone();
@@ -137,7 +149,28 @@ pub(super) fn plan(
     }
     let own_error = pilot.error(scene);
     let plan = Search::new(&coded, &pilot, stated, fronts, progress).plan(demand);
-    Ok(WindPlan { own: Measured { error: own_error, ..plan.own }, ..plan })
+    let may_coarsen = !stated.iter().any(|path| path == "stream.wind_error_m_per_s");
+    let plan = with_data(plan, &coded, &pilot, demand.limit_kbit_per_s.filter(|_| may_coarsen));
+    let winds = Winds { dt_secs: scene.dt_secs(), of_places: pilot.winds_of_places(PLACES) };
+    Ok((WindPlan { own: Measured { error: own_error, ..plan.own }, ..plan }, winds))
+}
+
+/// The plan with the data of its frames, and with codes that are as much coarser as a limit of the data (kbit/s) needs and the scene allows.
+fn with_data(mut plan: WindPlan, coded: &Scene, pilot: &WindPilot<'_>, limit_kbit_per_s: Option<f64>) -> WindPlan {
+    let mut scene = plan.chosen.settings.applied_to(coded);
+    let mut kbit_per_s = pilot.kbit_per_s(&scene);
+    let planned_m_per_s = plan.wind_error_m_per_s;
+    let coarsest_m_per_s = CODE_M_PER_S[1] as f32;
+    while limit_kbit_per_s.is_some_and(|limit| kbit_per_s > limit) && plan.wind_error_m_per_s < coarsest_m_per_s {
+        plan.wind_error_m_per_s = ((1e4 * plan.wind_error_m_per_s * CODE_RATIO).floor() / 1e4).min(coarsest_m_per_s);
+        scene.stream.wind_error_m_per_s = plan.wind_error_m_per_s;
+        kbit_per_s = pilot.kbit_per_s(&scene);
+    }
+    if plan.wind_error_m_per_s > planned_m_per_s {
+        plan.error_of_finer_codes = Some(plan.chosen.error);
+        plan.chosen.error = pilot.error(&scene);
+    }
+    WindPlan { kbit_per_s: Some(kbit_per_s), ..plan }
 }
 
 impl<'p> Search<'p> {
@@ -182,7 +215,17 @@ impl<'p> Search<'p> {
         }
         let runs = [self.candidates.len(), self.known.len()];
         let (reference, wind_error_m_per_s) = ((self.pilot.cells, self.pilot.rms_m_per_s), self.scene.stream.wind_error_m_per_s);
-        WindPlan { own, chosen, within_tolerance, reference, runs, is_cut, wind_error_m_per_s }
+        WindPlan {
+            own,
+            chosen,
+            within_tolerance,
+            reference,
+            runs,
+            is_cut,
+            wind_error_m_per_s,
+            kbit_per_s: None,
+            error_of_finer_codes: None,
+        }
     }
 
     fn is_spent(&self) -> bool {
@@ -190,7 +233,7 @@ impl<'p> Search<'p> {
     }
 
     /// The best of the settings that have been run: the cheapest within tolerance and budget, else the most accurate within the budget.
-    fn best_known(&self, Demand { tolerance, limit_ms }: Demand) -> Option<Measured> {
+    fn best_known(&self, Demand { tolerance, limit_ms, .. }: Demand) -> Option<Measured> {
         let error_of = |settings| self.known.iter().find(|(known, _)| *known == settings).map(|(_, error)| *error);
         let run = self
             .candidates

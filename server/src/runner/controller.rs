@@ -211,7 +211,7 @@ impl Controller {
 
     /// The state for people.
     pub(super) fn report(&self, diagnostics: &Diagnostics) -> ControlReport {
-        let Demands { wind, bend_deg, planned_bend_deg, server_ms } = self.demands;
+        let Demands { wind, bend_deg, planned_bend_deg, server_ms, .. } = self.demands;
         let wind_error = wind.filter(|wind| wind.rms_m_per_s > 0.0).map(|wind| {
             let estimated = diagnostics.wind_step_error_m_per_s / wind.rms_m_per_s;
             let is_stretched = diagnostics.wind_step_secs > (self.range.own.wind_ticks as f32 + 0.5) * self.range.tick_secs;

@@ -36,6 +36,14 @@ impl Default for SendLimits {
     }
 }
 
+impl SendLimits {
+    /// These limits with at most so much data (kbit/s), if there is such a limit.
+    pub fn within_kbit_per_s(self, kbit_per_s: Option<f32>) -> Self {
+        let limit = kbit_per_s.map_or(f64::INFINITY, |kbit_per_s| 125.0 * f64::from(kbit_per_s));
+        Self { bytes_per_s: self.bytes_per_s.min(limit), ..self }
+    }
+}
+
 /// A publication: the data that the frames of all clients share.
 #[derive(Debug)]
 pub struct Publication<'a> {

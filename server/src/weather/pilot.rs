@@ -14,7 +14,9 @@ use prairie_core::scene::{Scene, WindAdvection, WindDiffusion, WindMethod, WindP
 use prairie_core::terrain::{CoverMap, HeightMap};
 use prairie_core::wind::CellGrid;
 use prairie_core::wind::turbulence::RESOLVED_CELLS;
+use prairie_core::wire::codec::{self, Shape};
 use prairie_core::wire::quantise::CodeSteps;
+use prairie_core::wire::{self, ServerMessage, TurbulenceState};
 use prairie_wind::{Air, Real, StepReport, transport};
 
 /// Duration of a pilot run (s): a gust crosses some cells in it, and errors have not yet grown by the instability of the flow.
@@ -175,6 +177,37 @@ impl<'a> WindPilot<'a> {
         }
     }
 
+    /// Data of the wind's frames with the settings of `scene` (kbit/s), dust apart; infinite where the run fails.
+    pub(crate) fn kbit_per_s(&self, scene: &Scene) -> f64 {
+        let mut scene = scene.clone();
+        scene.wind.dust.release_per_s = 0.0;
+        let ([ticks, frame_ticks], (_, step_secs)) = (intervals(&scene), step_interval(&scene));
+        let (steps, codes) = ((self.ticks / ticks as usize).max(1), CodeSteps::from(&scene.stream));
+        let (steps_per_frame, shape) = ((frame_ticks / ticks).max(1) as usize, Shape::wind(scene.wind.cells[0] as usize, false));
+        let (mut before, mut frames, mut bytes) = (None, 0, 0);
+        let land = Land { height: self.height, cover: self.cover };
+        let outcome = run::<f32>(&scene, land, &self.start, step_secs, steps, |step, velocities, _| {
+            if !(step + 1).is_multiple_of(steps_per_frame) {
+                return;
+            }
+            let plane = |axis: usize| velocities.iter().map(move |velocity| codes.wind_code(velocity[axis]));
+            let now: Vec<i16> = (0..3).flat_map(plane).collect();
+            if let Some(before) = before.replace(now.clone()) {
+                frames += 1;
+                let is_sent = now != before || scene.wind.turbulence > 0.0;
+                bytes += if is_sent { wind_message_bytes(codec::encode(shape, &now, Some(&before))) } else { 0 };
+            }
+        });
+        let secs = f64::from(frames) * step_secs * steps_per_frame as f64;
+        outcome.map_or(f64::INFINITY, |()| if frames == 0 { 0.0 } else { 8e-3 * bytes as f64 / secs })
+    }
+
+    /// The wind at up to `count` places, over the ticks of the reference (m/s).
+    pub(crate) fn winds_of_places(&self, count: usize) -> Vec<Vec<[f32; 2]>> {
+        let stride = self.places_m.len().div_ceil(count).max(1);
+        (0..self.places_m.len()).step_by(stride).map(|place| self.felt.iter().map(|felt| felt[place]).collect()).collect()
+    }
+
     /// Cell-sub-steps of a run of `scene`.
     pub(crate) fn work(&self, scene: &Scene) -> f64 {
         let cells: f64 = scene.wind.cells.iter().map(|n| f64::from(*n)).product();
@@ -257,6 +290,11 @@ fn felt_at(scene: &Scene, velocities: &[Vec3], places_m: &[[f32; 2]]) -> Vec<[f3
 /// A velocity as the codes of the stream give it to the world.
 fn coded(steps: &CodeSteps, velocity: Vec3) -> Vec3 {
     Vec3::from_array(velocity.to_array().map(|speed| steps.wind_m_per_s(steps.wind_code(speed))))
+}
+
+/// Size of the message with a frame of the wind (bytes).
+fn wind_message_bytes(payload: Vec<u8>) -> usize {
+    wire::encode(&ServerMessage::Wind { tick: 0, seq: 0, key: false, turbulence: TurbulenceState::default(), payload }).len()
 }
 
 fn square([u, w]: &[f32; 2]) -> f64 {

@@ -19,7 +19,7 @@ use tokio::sync::oneshot;
 /// A scene that demands an error of its wind and a time of its ticks, as a plan would have it.
 fn demanding() -> LoadedScene {
     let wind = WindDemand { tolerance: 0.05, planned: 0.04, rms_m_per_s: 4.0 };
-    let demands = Demands { wind: Some(wind), bend_deg: Some(1.0), planned_bend_deg: 0.8, server_ms: 1000.0 };
+    let demands = Demands { wind: Some(wind), bend_deg: Some(1.0), planned_bend_deg: 0.8, server_ms: 1000.0, kbit_per_s: None };
     let mut scene = scenes::load("meadow").unwrap();
     scene.explanation = Arc::new(Explanation { demands: Some(demands), ..Explanation::clone(&scene.explanation) });
     scene

@@ -149,6 +149,7 @@ const BEFORE_OBJECTS: &[(&str, Allowed)] = &[
     ("plants.plants_per_side", Range(2.0, 256.0)),
     ("plants.near_ratio", Range(1.0, 5.0)),
     ("plants.blade_segments", Range(0.0, 12.0)),
+    ("plants.highest_detail", Range(0.0, 3.0)),
     ("plants.height_m", Range(0.02, 5.0)),
     ("plants.height_variation", Range(0.0, 0.9)),
     ("plants.width_m", Range(0.001, 0.5)),

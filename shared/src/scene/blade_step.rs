@@ -31,6 +31,11 @@ const PAST_M_PER_S: f32 = 20.0;
 const MARGIN: f32 = 0.9;
 
 impl Plants {
+    /// Height of the lowest blades relative to their kind's mean, apart from those on exhausted soil and at borders with bare ground.
+    pub fn least_grown(&self) -> f32 {
+        LEAST_GROWN * (1.0 - self.height_variation)
+    }
+
     /// Height of the tallest blades relative to their kind's mean.
     pub fn most_grown(&self) -> f32 {
         MOST_GROWN * (1.0 + self.height_variation)
@@ -46,7 +51,7 @@ impl Scene {
     /// The same for one kind of grass; its shortest blades swing fastest.
     pub(super) fn kind_step_secs(&self, kind: usize) -> f32 {
         let (plants, grass) = (self.kinds_of_plants()[kind], self.kinds()[kind]);
-        let least = LEAST_GROWN * (1.0 - plants.height_variation);
+        let least = plants.least_grown();
         let lowest = Blade {
             length_m: plants.height_m * least,
             frequency_rad_per_s: TAU * plants.swing_hz / least,

@@ -82,6 +82,9 @@ pub struct Plants {
     /// Straight segments of a near and of a farther blade, one less than its backbone points (Zhang §3.1.1); 0: the quality of the picture decides.
     /// Default (0, 0), allowed 0..=12 each.
     pub blade_segments: [u32; 2],
+    /// Highest level of detail that automatic quality draws with, from 0 (`low`) to 3 (`ultra`); a quality that somebody chooses goes beyond it. Default 3,
+    /// allowed 0..=3.
+    pub highest_detail: f32,
     /// Mean height of a blade (m). Default 0.8, allowed 0.02..=5.
     pub height_m: f32,
     /// Random variation of the height, plus or minus, as a fraction. Default 0.35, allowed 0..=0.9.
@@ -126,6 +129,7 @@ impl Default for Plants {
             plants_per_side: 32,
             near_ratio: 5.0,
             blade_segments: [0; 2],
+            highest_detail: 3.0,
             height_m: 0.8,
             height_variation: 0.35,
             width_m: 0.02,

@@ -9,6 +9,7 @@
 //! | `budget` | level of detail within a frame budget |
 //! | `plants` | time against the plants of the scene |
 //! | `height` | time against the height of the view |
+//! | `levels` | error of each quality in all views |
 //! | `sweep` | times against one quantity, a line for each quality |
 //! | `vertices` | time per million vertices, over the views and the qualities |
 //! | `problems` | problems of error against time, as other models have them |
@@ -17,6 +18,7 @@
 mod budget;
 mod files;
 mod height;
+mod levels;
 mod method;
 mod plants;
 mod problems;
@@ -36,7 +38,8 @@ pub use summary::summary;
 use prairie_charts::figure::Figure;
 
 /// All figures other than time against similarity.
-pub const FIGURES: [Figure; 3] = [
+pub const FIGURES: [Figure; 4] = [
+    Figure { name: "levels", title: "Error of the picture at each level of detail", draw: levels::draw },
     Figure { name: "plants", title: "Frame time against the plants of the scene", draw: plants::draw },
     Figure { name: "height", title: "Frame time against the height of the view", draw: height::draw },
     Figure { name: "vertices", title: "Time of the main pass per million vertices", draw: vertices::draw },
