@@ -13,7 +13,7 @@ use prairie_core::wire::{ClientMessage, Drive};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tokio::sync::oneshot;
 
 /// A scene that demands an error of its wind and a time of its ticks, as a plan would have it.
@@ -96,6 +96,36 @@ async fn a_budget_that_no_tick_keeps_makes_all_give_way_and_a_replay_repeats_it(
     assert_eq!(resumed.world().tick(), player.world.tick());
     assert!(resumed.world().save().encode() == player.world.save().encode(), "the replay has the bits of the world that ran");
     prairie::runner::Simulation::step(&mut resumed, &[]);
+}
+
+/// Bytes to a viewer from its first frame on, and the time that they took (s).
+async fn data_of_viewer(server: &Server) -> (usize, f64) {
+    let mut viewer = PlainClient::join(server, "Ida").await;
+    viewer.frame().await;
+    let (before, start) = (viewer.replica.bytes, Instant::now());
+    while start.elapsed() < Duration::from_secs(4) {
+        viewer.frame().await;
+    }
+    (viewer.replica.bytes - before, start.elapsed().as_secs_f64())
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn a_viewer_gets_no_more_data_than_the_scene_allows() {
+    let folder = tempfile::tempdir().unwrap();
+    let free = start(demanding(), folder.path(), false).await;
+    let (free_bytes, _) = data_of_viewer(&free).await;
+    free.stop().await;
+    let kbit_per_s = 16.0;
+    let mut scene = demanding();
+    let mut explanation = Explanation::clone(&scene.explanation);
+    explanation.demands.as_mut().unwrap().kbit_per_s = Some(kbit_per_s);
+    scene.explanation = Arc::new(explanation);
+    let limited = start(scene, folder.path(), false).await;
+    let (bytes, secs) = data_of_viewer(&limited).await;
+    limited.stop().await;
+    // A burst of a second, and the frame that overdraws.
+    let allowed = 125.0 * f64::from(kbit_per_s) * (secs + 1.0) + 4096.0;
+    assert!(bytes as f64 <= allowed && free_bytes as f64 > allowed, "{bytes} bytes, {free_bytes} without the limit; allowed {allowed}");
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
