@@ -29,15 +29,15 @@ const SCENE: &str = "storm";
 #[derive(Clone, Copy, Debug)]
 struct Dial {
     name: &'static str,
-    /// Tolerances of the wind and of the bending angle; `None` for the scene as it is.
-    tolerances: Option<[&'static str; 2]>,
+    /// Tolerances of the wind, the bending angle and the blades, and of the picture; `None` for the scene as it is.
+    tolerances: Option<([&'static str; 3], f32)>,
 }
 
 const DIALS: [Dial; 4] = [
     Dial { name: "as the scene states it", tolerances: None },
-    Dial { name: "fine: wind 3 %, bend 1°", tolerances: Some(["3 %", "1 deg"]) },
-    Dial { name: "middle: wind 8 %, bend 2°", tolerances: Some(["8 %", "2 deg"]) },
-    Dial { name: "coarse: wind 30 %, bend 8°", tolerances: Some(["30 %", "8 deg"]) },
+    Dial { name: "fine: wind 3 %, bend 1°, blades 2 %, picture 0.14", tolerances: Some((["3 %", "1 deg", "2 %"], 0.14)) },
+    Dial { name: "middle: wind 8 %, bend 2°, blades 5 %, picture 0.2", tolerances: Some((["8 %", "2 deg", "5 %"], 0.2)) },
+    Dial { name: "coarse: wind 30 %, bend 8°, blades 30 %, picture 0.28", tolerances: Some((["30 %", "8 deg", "30 %"], 0.28)) },
 ];
 
 /// What is measured of a setting.
@@ -48,6 +48,10 @@ struct Setting {
     /// Mean time of a step of the world with a car in it (ms).
     tick_ms: f64,
     kbit_per_s: f64,
+    blades_percent: f64,
+    flip: f64,
+    /// Time of a frame (ms).
+    frame_ms: f64,
     picture: Picture,
 }
 
@@ -68,9 +72,8 @@ fn percent(plan: &Plan) -> Result<(f64, f64)> {
 impl Dial {
     async fn measure(&self, gpu: &Gpu, size_px: [u32; 2], measured: Duration) -> Result<Setting> {
         let open = demanding(|scene| {
-            if let Some([wind, bend]) = self.tolerances {
-                scene.accuracy =
-                    Accuracy { wind: wind.to_owned(), bend: bend.to_owned(), cells: "planned".to_owned(), ..Accuracy::default() };
+            if let Some((texts, picture)) = self.tolerances {
+                scene.accuracy = accuracy(texts, picture);
             }
         })?;
         let plan = open.plan_anew(&Fronts::in_use().fronts, &mut Silent);
@@ -78,11 +81,19 @@ impl Dial {
         let wind = plan.wind.as_ref().ok().context("a wind")?;
         let words = wind.chosen.settings.words(open.loaded.scene.wind.method);
         let bend_deg = plan.bend.error_deg();
+        let blades_percent = 100.0 * plan.blades.as_ref().context("single blades")?.error();
+        let flip = plan.picture.as_ref().context("a picture")?.flip;
         let loaded = open.resolved(&plan);
         let tick_ms = tick_ms(&loaded, if measured.as_secs() > 5 { 900 } else { 60 })?;
         let kbit_per_s = kbit_per_s(loaded.clone(), measured).await?;
-        Ok(Setting { words, wind_percent, bend_deg, tick_ms, kbit_per_s, picture: picture(gpu, &loaded, size_px)? })
+        let (picture, frame_ms) = picture(gpu, &loaded, size_px)?;
+        Ok(Setting { words, wind_percent, bend_deg, tick_ms, kbit_per_s, blades_percent, flip, frame_ms, picture })
     }
+}
+
+fn accuracy([wind, bend, blades]: [&str; 3], picture: f32) -> Accuracy {
+    let [wind, bend, blades] = [wind, bend, blades].map(str::to_owned);
+    Accuracy { wind, bend, blades, picture, cells: "planned".to_owned() }
 }
 
 /// Mean time of a step while a car drives (ms), after two seconds.
@@ -108,15 +119,20 @@ async fn kbit_per_s(loaded: LoadedScene, measured: Duration) -> Result<f64> {
     Ok(8e-3 * bytes as f64 / measured.as_secs_f64())
 }
 
-/// The track of a car that has driven a curve, without the rain, which hides it.
-fn picture(gpu: &Gpu, loaded: &LoadedScene, size_px: [u32; 2]) -> Result<Picture> {
+/// The track of a car that has driven a curve, without the rain, which hides it, at the highest level of detail that automatic quality would use; and the time of a
+/// frame (ms).
+fn picture(gpu: &Gpu, loaded: &LoadedScene, size_px: [u32; 2]) -> Result<(Picture, f64)> {
     let mut dry = loaded.clone();
     dry.scene.rain.rate_mm_per_h = 0.0;
     let mut stage = Stage::new(&dry)?;
     let camera = Eye::Chase([17.0, 9.0, 4.0]).watch(&mut stage, Act::Track)?;
     let mut still = Still { stage, camera, size_px };
-    let mut canvas = still.canvas(gpu, Quality::High);
-    Ok(still.draw(&mut canvas).0)
+    let level = loaded.scene.plants.highest_detail;
+    let quality = Quality::ALL.into_iter().find(|quality| quality.level() >= level).unwrap_or(Quality::FINEST);
+    let mut canvas = still.canvas(gpu, quality);
+    canvas.set_level(level);
+    let (picture, _) = still.draw(&mut canvas);
+    Ok((picture, 1e3 * still.frame_secs(&mut canvas, 5)))
 }
 
 /// Settings of the literature and planned ones that err at most as much.
@@ -208,9 +224,11 @@ fn page(settings: &[(&str, Setting)], pairs: &[Pair]) -> String {
     let rows: Vec<_> = settings
         .iter()
         .map(|(name, setting)| {
-            let Setting { words, wind_percent, bend_deg, tick_ms, kbit_per_s, .. } = setting;
-            let figures = [format!("{wind_percent:.2} %"), format!("{bend_deg:.3}°"), format!("{tick_ms:.3}"), format!("{kbit_per_s:.0}")];
-            [vec![(*name).to_owned()], figures.to_vec(), vec![words.clone()]].concat()
+            let Setting { words, wind_percent, bend_deg, tick_ms, kbit_per_s, blades_percent, flip, frame_ms, .. } = setting;
+            let errors =
+                [format!("{wind_percent:.2} %"), format!("{bend_deg:.3}°"), format!("{blades_percent:.2} %"), format!("{flip:.3}")];
+            let costs = [format!("{tick_ms:.3}"), format!("{frame_ms:.0}"), format!("{kbit_per_s:.0}")];
+            [vec![(*name).to_owned()], errors.to_vec(), costs.to_vec(), vec![words.clone()]].concat()
         })
         .collect();
     let compared: Vec<_> = pairs
@@ -230,11 +248,14 @@ fn page(settings: &[(&str, Setting)], pairs: &[Pair]) -> String {
         "# The dial\n\n```sh\ncargo run --release -p tests --bin chart -- dial\n```\n\n\
          The storm at three settings of its [accuracy](../../server/README.md#plan), behind a car that has driven a curve; the picture leaves out the rain.\n\n\
          ![the same moment of the storm at fine, middle and coarse settings of the dial, from left to right](dial.jpg)\n\n\
-         Errors are those of the plan's pilot runs. The time is that of a whole step of the world with the car, the data those to its driver without a replica of the grass, on {}.\n\n{}\n\
+         Errors are those of the plan, of the picture those of its worst view. The time of a frame is that of the picture in software. The time is that of a whole step of the world with the car, the data those to its driver without a replica of the grass, on {}.\n\n{}\n\
          ## Beside settings of the literature\n\n\
          Settings of the sources in the same storm, and planned ones that may err as much; times per tick by the cost model.\n\n{}",
         machine(),
-        markdown(&["setting", "error of the wind", "error of the bend", "step (ms)", "data (kbit/s)", "planned wind"], &rows),
+        markdown(
+            &["setting", "wind", "bend", "blades", "picture (FLIP)", "step (ms)", "frame (ms)", "data (kbit/s)", "planned wind"],
+            &rows
+        ),
         markdown(&["settings", "error", "published (ms)", "planned (ms)", "ratio", "planned settings"], &compared)
     )
 }
@@ -246,15 +267,15 @@ mod tests {
     #[test]
     fn a_coarser_dial_errs_more_and_costs_less() {
         let measured = [DIALS[1], DIALS[3]].map(|dial| {
-            let [wind, bend] = dial.tolerances.unwrap().map(str::to_owned);
-            let cells = "planned".to_owned();
-            let open = demanding(|scene| scene.accuracy = Accuracy { wind, bend, cells, ..Accuracy::default() }).unwrap();
+            let (texts, picture) = dial.tolerances.unwrap();
+            let open = demanding(|scene| scene.accuracy = accuracy(texts, picture)).unwrap();
             let plan = open.plan_anew(&Fronts::built_in(), &mut Silent);
             let (percent, ms) = percent(&plan).unwrap();
-            (percent, plan.bend.error_deg(), ms)
+            (percent, plan.bend.error_deg(), ms, plan.blades.unwrap().error(), plan.picture.unwrap())
         });
-        let [fine, coarse] = measured;
+        let [fine, coarse] = measured.clone();
         assert!(fine.0 <= 3.0 && coarse.0 <= 30.0 && fine.0 < coarse.0, "{measured:?}");
-        assert!(fine.1 < coarse.1 && coarse.2 < fine.2, "{measured:?}");
+        assert!(fine.1 < coarse.1 && coarse.2 < fine.2 && fine.3 < coarse.3, "{measured:?}");
+        assert!(fine.4.flip <= 0.14 && coarse.4.highest_detail < fine.4.highest_detail, "{measured:?}");
     }
 }

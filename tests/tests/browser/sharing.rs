@@ -2,6 +2,7 @@
 
 use anyhow::{Context as _, Result, ensure};
 use prairie::charts::image::Picture;
+use prairie::charts::worlds;
 use prairie::scenes;
 use prairie::world::World;
 use serde_json::{Value, json};
@@ -119,5 +120,23 @@ async fn quality_is_automatic_until_it_is_set() -> Result<()> {
     browser.until("(s => !s.automatic && s.quality === 'low' && s.level === 0)(window.prairie.state())").await?;
     browser.until("new URLSearchParams(location.search).get('quality') === 'low'").await?;
     browser.evaluate("window.prairie.draw(2)").await?;
+    Ok(())
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn automatic_quality_keeps_the_frame_time_and_the_detail_of_the_scene() -> Result<()> {
+    let mut hills = worlds::loaded_hills(|_| 0)?;
+    (hills.scene.budget.client_ms, hills.scene.plants.highest_detail) = (60.0, 0.5);
+    let world = World::new(&hills.scene, hills.maps())?;
+    let prairie = Prairie::serve(hills, world).await?;
+    let browser = prairie.visitor_at("?panel=1").await?;
+    browser.until("(s => s.automatic && Math.abs(s.budget_ms - 60) < 0.01 && s.highest_level === 0.5)(window.prairie.state())").await?;
+    browser.until("document.getElementById('detail').innerText.includes('of 0.5 · target 60 ms')").await?;
+    browser.evaluate("window.prairie.draw(40)").await?;
+    let level = browser.state().await?["level"].as_f64().context("a level")?;
+    ensure!(level <= 0.5, "level {level}");
+    // The address wins over the scene's frame time.
+    browser.go(&prairie.url("?panel=1&budget=250")).await?;
+    browser.until("(s => s && s.highest_level === 0.5 && Math.abs(s.budget_ms - 250) < 0.01)(window.prairie.state())").await?;
     Ok(())
 }
