@@ -139,32 +139,27 @@ mod tests {
     #[test]
     fn planned_blades_hold_their_tolerance_and_nothing_cheaper_does() {
         let mut scene = load("blades").unwrap().scene;
-        // Slow enough that all integrators take one step in a picture.
-        (scene.plants.swing_hz, scene.plants.swing_damping) = (0.15, 0.5);
         let (winds, fronts) = (winds(), Fronts::built_in());
-        let pilot = BladePilot::new(&scene, &winds);
         let mut integrators = Vec::new();
-        for tolerance in [0.02, 0.05, 0.1, 0.4] {
-            let plan = planned(&scene, &[], tolerance);
-            println!("{plan:?}");
-            assert!(plan.conflict.is_none() && plan.error() <= tolerance && plan.segments[0] == plan.segments[1], "{plan:?}");
-            let of = |integrator| swing(&scene, &pilot, integrator, &fronts);
-            let own_ns = of(plan.integrator).ns;
-            for other in allowed(&scene).into_iter().map(of).filter(|other| other.error <= SWING_SHARE * tolerance) {
-                assert!(own_ns <= other.ns, "{plan:?} {other:?}");
+        // The grass of the scene, and slow grass, for which all integrators take one step in a picture.
+        for (swing_hz, damping) in [(scene.plants.swing_hz, scene.plants.swing_damping), (0.15, 0.5)] {
+            (scene.plants.swing_hz, scene.plants.swing_damping) = (swing_hz, damping);
+            let pilot = BladePilot::new(&scene, &winds);
+            for tolerance in [0.02, 0.05, 0.1, 0.4] {
+                let plan = planned(&scene, &[], tolerance);
+                assert!(plan.conflict.is_none() && plan.error() <= tolerance && plan.segments[0] == plan.segments[1], "{plan:?}");
+                let of = |integrator| swing(&scene, &pilot, integrator, &fronts);
+                let own_ns = of(plan.integrator).ns;
+                for other in allowed(&scene).into_iter().map(of).filter(|other| other.error <= SWING_SHARE * tolerance) {
+                    assert!(own_ns <= other.ns, "{plan:?} {other:?}");
+                }
+                let coarser = plan.segments[0] - 1;
+                assert!(coarser == 0 || plan.swing_error + pilot.strip_error(coarser) > tolerance, "one segment less holds it: {plan:?}");
+                integrators.push(plan.integrator);
             }
-            let coarser = plan.segments[0] - 1;
-            assert!(
-                coarser == 0 || plan.swing_error + pilot.strip_error(coarser) > tolerance,
-                "one segment less does not hold it: {plan:?}"
-            );
-            integrators.push(plan.integrator);
         }
-        assert_eq!(integrators[0], BladeIntegrator::Exact, "{integrators:?}");
-        assert!(
-            integrators.iter().any(|integrator| *integrator != BladeIntegrator::Exact),
-            "a large tolerance needs less: {integrators:?}"
-        );
+        assert!(integrators[..4].iter().all(|integrator| *integrator == BladeIntegrator::Exact), "{integrators:?}");
+        assert!(integrators[4..].iter().all(|integrator| *integrator == BladeIntegrator::Euler), "{integrators:?}");
     }
 
     #[test]
