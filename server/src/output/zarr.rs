@@ -1,7 +1,8 @@
 //! Zarr v3, written by `zarrs`: a store that `xarray.open_zarr` opens, with coordinates, units and attributes after the CF conventions.
 //!
-//! Values are chunked along time and over the land, and compressed by zstd after a shuffle of their bytes. Chunks of grass at rest are left out: they are zeros.
-//! Every [`FRAMES_PER_COMMIT`] frames, and at the end, the arrays get their new lengths, so that a store can be read up to there while it is written.
+//! Values are chunked along time and over the land, and compressed by zstd. Chunks of grass at rest are left out: they are zeros. Every [`FRAMES_PER_COMMIT`]
+//! frames, and at the end, the arrays get their new lengths, also in the consolidated metadata of the root, which is written last: a store can be read up to
+//! there while it is written.
 
 use super::Sink;
 use super::error::OutputError;
@@ -17,10 +18,11 @@ use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use zarrs::array::codec::{ShuffleCodec, ZstdCodec};
+use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{Array, ArrayBuilder, ArrayMetadataOptions, ArraySubset, Element, data_type};
 use zarrs::filesystem::FilesystemStore;
 use zarrs::group::GroupBuilder;
+use zarrs::metadata::v3::AdditionalFieldV3;
 
 /// Frames after which the arrays get their new lengths; a multiple of the frames of every chunk.
 pub const FRAMES_PER_COMMIT: usize = 16;
@@ -43,12 +45,21 @@ pub type Errors = BTreeMap<Field, f32>;
 /// A store that grows along time.
 pub struct ZarrStore {
     path: PathBuf,
+    root: Root,
     columns: Vec<Column>,
     times: Array<FilesystemStore>,
     /// Times that are not yet in the store.
     new_times: Vec<f64>,
     /// Number of frames that are in the store.
     committed: usize,
+}
+
+/// The group that holds all arrays.
+struct Root {
+    store: Arc<FilesystemStore>,
+    attributes: Map<String, Value>,
+    /// Metadata of the arrays, by their names.
+    arrays: Map<String, Value>,
 }
 
 /// A variable of the store.
@@ -75,15 +86,17 @@ impl ZarrStore {
         new_folder(path, overwrite, "Zarr store", "zarr.json", is_ours)?;
         let failed = |reason: &dyn Display| OutputError::Zarr { path: path.to_owned(), reason: reason.to_string() };
         let store = Arc::new(FilesystemStore::new(path).map_err(|error| failed(&error))?);
-        let mut group = GroupBuilder::new();
-        group.attributes(attributes_of_run(loaded, errors));
-        group.build(Arc::clone(&store), "/").map_err(|error| failed(&error))?.store_metadata().map_err(|error| failed(&error))?;
+        let mut root = Root { store: Arc::clone(&store), attributes: attributes_of_run(loaded, errors), arrays: Map::new() };
+        // The first file: by it the folder is known as a store.
+        root.write().map_err(|error| failed(&error))?;
         let writer = Writer { path, store, scene: &loaded.scene };
-        writer.coordinates(sampler)?;
-        writer.ground_height(loaded)?;
+        let ground_height = writer.ground_height(loaded)?;
+        writer.coordinates(sampler)?.iter().chain([&ground_height]).for_each(|array| root.note(array));
         let times = writer.times()?;
         let columns = sampler.variables().map(|variable| writer.column(variable, errors)).collect::<Result<_, _>>()?;
-        Ok(Self { path: path.to_owned(), columns, times, new_times: Vec::new(), committed: 0 })
+        let mut store = Self { path: path.to_owned(), root, columns, times, new_times: Vec::new(), committed: 0 };
+        store.write_lengths()?;
+        Ok(store)
     }
 
     fn failed(&self, reason: impl Display) -> OutputError {
@@ -96,13 +109,18 @@ impl ZarrStore {
         for number in 0..self.columns.len() {
             self.columns[number].flush().map_err(|reason| self.failed(reason))?;
         }
-        let written = self.append_times(frames);
-        written.map_err(|reason| self.failed(reason))?;
+        self.append_times(frames).map_err(|reason| self.failed(reason))?;
+        self.committed = frames;
+        self.write_lengths()
+    }
+
+    /// Writes the lengths of the arrays, those of the root last.
+    fn write_lengths(&mut self) -> Result<(), OutputError> {
         for array in self.columns.iter().map(|column| &column.array).chain([&self.times]) {
             array.store_metadata_opt(&plain()).map_err(|error| self.failed(error))?;
+            self.root.note(array);
         }
-        self.committed = frames;
-        Ok(())
+        self.root.write().map_err(|reason| self.failed(reason))
     }
 
     fn append_times(&mut self, frames: usize) -> Result<(), String> {
@@ -124,6 +142,23 @@ impl Sink for ZarrStore {
 
     fn finish(mut self: Box<Self>) -> Result<(), OutputError> {
         if self.new_times.is_empty() { Ok(()) } else { self.commit() }
+    }
+}
+
+impl Root {
+    /// Takes the metadata of an array.
+    fn note(&mut self, array: &Array<FilesystemStore>) {
+        let name = array.path().as_str().trim_start_matches('/').to_owned();
+        self.arrays.insert(name, json!(array.metadata()));
+    }
+
+    /// Writes the attributes, and the metadata of all arrays in one, so that readers open one file and find equal lengths in it.
+    fn write(&self) -> Result<(), String> {
+        let consolidated = AdditionalFieldV3::new(json!({ "kind": "inline", "metadata": self.arrays }), false);
+        let mut group = GroupBuilder::new();
+        group.attributes(self.attributes.clone());
+        group.additional_fields([("consolidated_metadata".to_owned(), consolidated)].into_iter().collect());
+        group.build(Arc::clone(&self.store), "/").map_err(text)?.store_metadata().map_err(text)
     }
 }
 
@@ -165,30 +200,33 @@ impl Writer<'_> {
         OutputError::Zarr { path: self.path.to_owned(), reason: reason.to_string() }
     }
 
-    fn built(&self, builder: &mut ArrayBuilder, name: &str, value_bytes: usize) -> Result<Array<FilesystemStore>, OutputError> {
-        builder.bytes_to_bytes_codecs(vec![Arc::new(ShuffleCodec::new(value_bytes)), Arc::new(ZstdCodec::new(ZSTD_LEVEL, false))]);
+    fn built(&self, builder: &mut ArrayBuilder, name: &str) -> Result<Array<FilesystemStore>, OutputError> {
+        builder.bytes_to_bytes_codecs(vec![Arc::new(ZstdCodec::new(ZSTD_LEVEL, false))]);
         let array = builder.build(Arc::clone(&self.store), &format!("/{name}")).map_err(|error| self.failed(error))?;
         array.store_metadata_opt(&plain()).map_err(|error| self.failed(error))?;
         Ok(array)
     }
 
-    fn fill<T: Element>(&self, array: &Array<FilesystemStore>, values: &[T]) -> Result<(), OutputError> {
-        array.store_array_subset(&array.subset_all(), values).map_err(|error| self.failed(error))
+    fn filled<T: Element>(&self, builder: &mut ArrayBuilder, name: &str, values: &[T]) -> Result<Array<FilesystemStore>, OutputError> {
+        let array = self.built(builder, name)?;
+        array.store_array_subset(&array.subset_all(), values).map_err(|error| self.failed(error))?;
+        Ok(array)
     }
 
     /// Coordinates of the grids that the sampler's variables and the ground use.
-    fn coordinates(&self, sampler: &Sampler) -> Result<(), OutputError> {
+    fn coordinates(&self, sampler: &Sampler) -> Result<Vec<Array<FilesystemStore>>, OutputError> {
         let is_used = |grid: &Grid| *grid == Grid::Grass || sampler.variables().any(|variable| variable.field.grid() == *grid);
-        for axis in Grid::ALL.iter().filter(|grid| is_used(grid)).flat_map(|grid| grid.axes(self.scene)) {
+        let axes = Grid::ALL.into_iter().filter(is_used).flat_map(|grid| grid.axes(self.scene));
+        let coordinate = |axis: Axis| {
             let count = axis.count as u64;
             let mut builder = ArrayBuilder::new(vec![count], vec![count], data_type::float64(), f64::NAN);
             builder.dimension_names(Some([axis.name])).attributes(attributes_of_axis(&axis));
-            self.fill(&self.built(&mut builder, axis.name, size_of::<f64>())?, &axis.centers_m())?;
-        }
-        Ok(())
+            self.filled(&mut builder, axis.name, &axis.centers_m())
+        };
+        axes.map(coordinate).collect()
     }
 
-    fn ground_height(&self, loaded: &LoadedScene) -> Result<(), OutputError> {
+    fn ground_height(&self, loaded: &LoadedScene) -> Result<Array<FilesystemStore>, OutputError> {
         let [south, east] = Grid::Grass.axes(self.scene)[..] else { unreachable!("grass has two axes") };
         let meters = |cell: usize, axis: &Axis| (cell as f32 + 0.5) * axis.spacing_m;
         let places = (0..south.count).flat_map(|j| (0..east.count).map(move |i| (i, j)));
@@ -197,14 +235,14 @@ impl Writer<'_> {
         let (shape, chunks) = (shape(&[south, east]), self.chunk(&[south, east]));
         let mut builder = ArrayBuilder::new(shape, chunks, data_type::float32(), f32::NAN);
         builder.dimension_names(Some([south.name, east.name])).attributes(map(attributes));
-        self.fill(&self.built(&mut builder, "ground_height", size_of::<f32>())?, &heights_m)
+        self.filled(&mut builder, "ground_height", &heights_m)
     }
 
     fn times(&self) -> Result<Array<FilesystemStore>, OutputError> {
         let attributes = json!({ "units": "s", "standard_name": "time", "long_name": "simulated time since the start", "axis": "T" });
         let mut builder = ArrayBuilder::new(vec![0], vec![TIMES_PER_CHUNK], data_type::float64(), f64::NAN);
         builder.dimension_names(Some(["time"])).attributes(map(attributes));
-        self.built(&mut builder, "time", size_of::<f64>())
+        self.built(&mut builder, "time")
     }
 
     fn column(&self, variable: &Variable, errors: &Errors) -> Result<Column, OutputError> {
@@ -219,7 +257,7 @@ impl Writer<'_> {
         let mut builder = ArrayBuilder::new(shape, chunks, data_type::float32(), 0.0_f32);
         builder.dimension_names(Some(std::iter::once("time").chain(axes.iter().map(|axis| axis.name))));
         builder.attributes(attributes_of_variable(variable, error));
-        let array = self.built(&mut builder, variable.name, size_of::<f32>())?;
+        let array = self.built(&mut builder, variable.name)?;
         Ok(Column { array, frames_per_chunk: frames_per_chunk as usize, step: error.map(step), held: Vec::new(), written: 0 })
     }
 

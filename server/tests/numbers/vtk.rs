@@ -33,7 +33,7 @@ fn array(file: &str, name: &str) -> (usize, Vec<f32>) {
 }
 
 /// Writes a run as VTK, and returns its frames.
-fn write(folder: &Path) -> Vec<prairie::output::Frame> {
+pub(crate) fn write(folder: &Path) -> Vec<prairie::output::Frame> {
     let loaded = scene();
     let sampler = Sampler::new(&loaded, &[Field::Wind, Field::GroundWind, Field::Bend, Field::BendVelocity]).unwrap();
     let (kept, vtk) = (Kept::default(), VtkFolder::create(folder, &loaded, &sampler, false).unwrap());
