@@ -4,7 +4,10 @@ use super::error::OutputError;
 use super::replace::new_file;
 use crate::scenes::LoadedScene;
 use crate::world::World;
+use prairie_core::bend::Bend;
+use prairie_core::grass::BendSimulation;
 use prairie_core::grass::grass_properties::GrassProperties;
+use prairie_core::grass::grass_state::published;
 use prairie_core::terrain::HeightMap;
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
@@ -97,8 +100,7 @@ impl StationFile {
         for Site { station: Station { name, at_m: [x, z] }, ground_m, height_m } in &self.stations {
             let [u, v, w] = wind.wind_at([*x, *height_m, *z]);
             let [east, south] = bend.lean_rad([*x, *z], wind);
-            let in_field = bend.field().bend_at(*x, *z);
-            let ([omega_x, omega_z], theta) = (in_field.omega, in_field.theta);
+            let Bend { theta, omega: [omega_x, omega_z] } = bend_at(bend, [*x, *z]);
             let (lean_rad, heading_deg) = (east.hypot(south), heading_deg([east, south]));
             let row = format_args!(
                 "{time_secs},{name},{x},{z},{ground_m},{height_m},{u},{v},{w},{lean_rad},{heading_deg},{theta},{omega_x},{omega_z}"
@@ -115,6 +117,14 @@ impl StationFile {
     pub fn finish(mut self) -> Result<(), OutputError> {
         self.file.flush().map_err(OutputError::file(&self.path))
     }
+}
+
+/// Bend of the cell at a position, bend field and flattened grass together, as the fields have it.
+fn bend_at(bend: &BendSimulation, at_m: [f32; 2]) -> Bend {
+    let cell = at_m.map(|m| (m / bend.field().layout().cell_m).floor() as i64);
+    let in_field = bend.field().cell(cell);
+    let flattened_rad = bend.field().locate(cell).map_or([0.0; 2], |(patch, [i, j])| bend.flattened().lean_rad(patch, i, j));
+    if flattened_rad == [0.0; 2] { in_field } else { published(in_field, flattened_rad) }
 }
 
 fn ground_m(height: &HeightMap, [x, z]: [f32; 2]) -> f32 {
