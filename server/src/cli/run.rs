@@ -7,7 +7,7 @@ use clap::{Args, ValueHint};
 use prairie::batch::{Drivers, Schedule, read_drivers, run};
 use prairie::escaped::escaped;
 use prairie::output::vtk::VtkFolder;
-use prairie::output::{ALLOWED_ERROR, Field, Outputs, Sampler, Station, StationFile};
+use prairie::output::{ALLOWED_ERROR, Field, Outputs, Sampler, Sink, Station, StationFile};
 use prairie::plan::Line;
 use prairie::scenes::{self, LoadedScene};
 use prairie::world::World;
@@ -128,32 +128,32 @@ impl Run {
         let mut outputs = Outputs::default();
         if self.out.is_some() || self.vtk.is_some() {
             let sampler = Sampler::new(loaded, &fields)?;
-            self.open_zarr(loaded, &sampler, &mut outputs)?;
+            let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
+            sinks.extend(self.zarr(loaded, &sampler)?);
             if let Some(folder) = &self.vtk {
-                outputs.sinks.push(Box::new(VtkFolder::create(folder, loaded, &sampler, self.overwrite)?));
+                sinks.push(Box::new(VtkFolder::create(folder, loaded, &sampler, self.overwrite)?));
             }
-            outputs.sampler = Some(sampler);
+            outputs = outputs.with_fields(sampler, sinks)?;
         }
         if let Some(file) = &self.stations {
-            outputs.stations = Some(StationFile::create(file, loaded, &self.station, self.overwrite)?);
+            outputs = outputs.with_stations(StationFile::create(file, loaded, &self.station, self.overwrite)?);
         }
         Ok(outputs)
     }
 
     #[cfg(feature = "zarr")]
-    fn open_zarr(&self, loaded: &LoadedScene, sampler: &Sampler, outputs: &mut Outputs) -> Result<()> {
+    fn zarr(&self, loaded: &LoadedScene, sampler: &Sampler) -> Result<Option<Box<dyn Sink>>> {
         use prairie::output::zarr::ZarrStore;
-        if let Some(path) = &self.out {
-            let errors = self.error.iter().copied().collect();
-            outputs.sinks.push(Box::new(ZarrStore::create(path, loaded, sampler, &errors, self.overwrite)?));
-        }
-        Ok(())
+        let Some(path) = &self.out else { return Ok(None) };
+        let errors = self.error.iter().copied().collect();
+        Ok(Some(Box::new(ZarrStore::create(path, loaded, sampler, &errors, self.overwrite)?)))
     }
 
+    /// None: `run` has refused the option.
     #[cfg(not(feature = "zarr"))]
     #[expect(clippy::unnecessary_wraps, clippy::unused_self, reason = "as with Zarr")]
-    fn open_zarr(&self, _: &LoadedScene, _: &Sampler, _: &mut Outputs) -> Result<()> {
-        Ok(())
+    fn zarr(&self, _: &LoadedScene, _: &Sampler) -> Result<Option<Box<dyn Sink>>> {
+        Ok(None)
     }
 }
 

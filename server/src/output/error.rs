@@ -56,6 +56,9 @@ pub enum OutputError {
     /// Two stations have the same name.
     #[error("two stations are called `{0}`; each needs a name of its own")]
     SameName(String),
+    /// The system refuses the thread that writes.
+    #[error("cannot start the thread that writes files: {0}")]
+    Thread(io::Error),
     /// A store cannot be written.
     #[error("the Zarr store `{}` cannot be written: {reason}", escaped(.path))]
     Zarr {

@@ -3,11 +3,11 @@
 //! Values belong to the cells, not to their corners. The axes are those of the world: X east, Y up, Z south. `air.pvd` has the wind's box, whose heights are
 //! above the ground; `ground.pvd` the wind at the ground, `grass.pvd` the cells of grass, both as flat pictures. Values are not rounded.
 
-use super::Sink;
 use super::error::OutputError;
 use super::grids::Grid;
 use super::replace::new_folder;
 use super::sampler::{Frame, Sampler};
+use super::sink::Sink;
 use super::variables::{Field, Variable};
 use crate::scenes::LoadedScene;
 use data_encoding::BASE64;

@@ -4,12 +4,12 @@
 //! frames, and at the end, the arrays get their new lengths, also in the consolidated metadata of the root, which is written last: a store can be read up to
 //! there while it is written.
 
-use super::Sink;
 use super::error::OutputError;
 use super::grids::{Axis, Grid};
 use super::replace::new_folder;
 use super::rounding::{rounded, step};
 use super::sampler::{Frame, Sampler};
+use super::sink::Sink;
 use super::variables::{Field, VARIABLES, Variable};
 use crate::scenes::LoadedScene;
 use prairie_core::scene::{Scene, WindTiling};

@@ -15,11 +15,10 @@ use prairie::scenes::{self, LoadedScene};
 use prairie::world::World;
 use prairie_core::bend::Bend;
 use prairie_core::grass::grass_state::published;
-use std::cell::RefCell;
 use std::path::Path;
 use std::process::{Command, Output};
-use std::rc::Rc;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
 
 /// A car that drives over the land, brakes and turns.
 const DRIVE: &str = "\
@@ -62,11 +61,11 @@ fn ran(text: &str, ticks: u64, ticks_per_frame: u64, outputs: Outputs) -> World 
 
 /// Keeps all frames in memory.
 #[derive(Default)]
-struct Kept(Rc<RefCell<Vec<Frame>>>);
+struct Kept(Arc<Mutex<Vec<Frame>>>);
 
 impl Sink for Kept {
     fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
-        self.0.borrow_mut().push(frame.clone());
+        self.0.lock().unwrap().push(frame.clone());
         Ok(())
     }
 

@@ -13,7 +13,7 @@ fn rows_have_the_values_of_each_step() {
     let (path, loaded) = (folder.path().join("masts.csv"), scene());
     let watched = stations(&["near=24,32", "far=5.3,60.1"]);
     let file = StationFile::create(&path, &loaded, &watched, false).unwrap();
-    ran(DRIVE, 60, 60, Outputs { stations: Some(file), ..Outputs::default() });
+    ran(DRIVE, 60, 60, Outputs::default().with_stations(file));
     let written = std::fs::read_to_string(&path).unwrap();
     let mut lines = written.lines();
     assert_eq!(lines.next(), Some(HEADER));

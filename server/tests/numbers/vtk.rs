@@ -38,8 +38,8 @@ pub(crate) fn write(folder: &Path) -> Vec<prairie::output::Frame> {
     let sampler = Sampler::new(&loaded, &[Field::Wind, Field::GroundWind, Field::Bend, Field::BendVelocity]).unwrap();
     let (kept, vtk) = (Kept::default(), VtkFolder::create(folder, &loaded, &sampler, false).unwrap());
     let frames = kept.0.clone();
-    ran(DRIVE, 60, 30, Outputs { sampler: Some(sampler), sinks: vec![Box::new(kept), Box::new(vtk)], stations: None });
-    frames.take()
+    ran(DRIVE, 60, 30, Outputs::default().with_fields(sampler, vec![Box::new(kept), Box::new(vtk)]).unwrap());
+    std::mem::take(&mut *frames.lock().unwrap())
 }
 
 #[test]

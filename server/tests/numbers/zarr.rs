@@ -23,7 +23,7 @@ pub(crate) fn write(path: &Path, errors: &Errors) {
     let loaded = scene();
     let sampler = Sampler::new(&loaded, &FIELDS).unwrap();
     let store = ZarrStore::create(path, &loaded, &sampler, errors, false).unwrap();
-    ran(DRIVE, TICKS, TICKS_PER_FRAME, Outputs { sampler: Some(sampler), sinks: vec![Box::new(store)], stations: None });
+    ran(DRIVE, TICKS, TICKS_PER_FRAME, Outputs::default().with_fields(sampler, vec![Box::new(store)]).unwrap());
 }
 
 fn open(path: &Path, name: &str) -> Array<FilesystemStore> {
