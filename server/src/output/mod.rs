@@ -9,6 +9,8 @@ mod grids;
 mod outputs;
 mod replace;
 mod rounding;
+#[cfg(feature = "zarr")]
+mod run_folder;
 mod sampler;
 mod sink;
 mod stations;

@@ -8,6 +8,7 @@ use super::error::OutputError;
 use super::grids::{Axis, Grid};
 use super::replace::new_folder;
 use super::rounding::{rounded, step};
+use super::run_folder::{METADATA, RunFolder};
 use super::sampler::{Frame, Sampler};
 use super::sink::Sink;
 use super::variables::{Field, VARIABLES, Variable};
@@ -20,7 +21,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use zarrs::array::codec::ZstdCodec;
 use zarrs::array::{Array, ArrayBuilder, ArrayMetadataOptions, ArraySubset, Element, data_type};
-use zarrs::filesystem::FilesystemStore;
 use zarrs::group::GroupBuilder;
 use zarrs::metadata::v3::AdditionalFieldV3;
 
@@ -47,7 +47,7 @@ pub struct ZarrStore {
     path: PathBuf,
     root: Root,
     columns: Vec<Column>,
-    times: Array<FilesystemStore>,
+    times: Array<RunFolder>,
     /// Times that are not yet in the store.
     new_times: Vec<f64>,
     /// Number of frames that are in the store.
@@ -56,7 +56,7 @@ pub struct ZarrStore {
 
 /// The group that holds all arrays.
 struct Root {
-    store: Arc<FilesystemStore>,
+    store: Arc<RunFolder>,
     attributes: Map<String, Value>,
     /// Metadata of the arrays, by their names.
     arrays: Map<String, Value>,
@@ -64,7 +64,7 @@ struct Root {
 
 /// A variable of the store.
 struct Column {
-    array: Array<FilesystemStore>,
+    array: Array<RunFolder>,
     frames_per_chunk: usize,
     /// Distance between rounded values; `None` if all bits are kept.
     step: Option<f32>,
@@ -82,10 +82,10 @@ impl ZarrStore {
         let names: Vec<_> = VARIABLES.iter().map(|variable| variable.name).collect();
         let coordinates: Vec<_> = Grid::ALL.iter().flat_map(|grid| grid.axes(&loaded.scene)).map(|axis| axis.name).collect();
         let is_ours =
-            |name: &str| ["zarr.json", "time", "ground_height"].contains(&name) || names.contains(&name) || coordinates.contains(&name);
-        new_folder(path, overwrite, "Zarr store", "zarr.json", is_ours)?;
+            |name: &str| [METADATA, "time", "ground_height"].contains(&name) || names.contains(&name) || coordinates.contains(&name);
+        new_folder(path, overwrite, "Zarr store", METADATA, is_ours)?;
         let failed = |reason: &dyn Display| OutputError::Zarr { path: path.to_owned(), reason: reason.to_string() };
-        let store = Arc::new(FilesystemStore::new(path).map_err(|error| failed(&error))?);
+        let store = Arc::new(RunFolder::new(path).map_err(|error| failed(&error))?);
         let mut root = Root { store: Arc::clone(&store), attributes: attributes_of_run(loaded, errors), arrays: Map::new() };
         // The first file: by it the folder is known as a store.
         root.write().map_err(|error| failed(&error))?;
@@ -147,7 +147,7 @@ impl Sink for ZarrStore {
 
 impl Root {
     /// Takes the metadata of an array.
-    fn note(&mut self, array: &Array<FilesystemStore>) {
+    fn note(&mut self, array: &Array<RunFolder>) {
         let name = array.path().as_str().trim_start_matches('/').to_owned();
         self.arrays.insert(name, json!(array.metadata()));
     }
@@ -163,9 +163,11 @@ impl Root {
 }
 
 impl Column {
+    /// Takes the values of a frame, and writes them once they are a chunk.
     fn add(&mut self, values: &[f32]) -> Result<(), String> {
         match self.step {
             Some(step) => self.held.extend(values.iter().map(|value| rounded(*value, step))),
+            None if self.frames_per_chunk == 1 => return self.store(values),
             None => self.held.extend_from_slice(values),
         }
         if self.held.len() == values.len() * self.frames_per_chunk { self.flush() } else { Ok(()) }
@@ -173,17 +175,24 @@ impl Column {
 
     /// Writes the values that are held.
     fn flush(&mut self) -> Result<(), String> {
-        if self.held.is_empty() {
-            return Ok(());
+        let mut held = std::mem::take(&mut self.held);
+        if !held.is_empty() {
+            self.store(&held)?;
         }
+        held.clear();
+        self.held = held;
+        Ok(())
+    }
+
+    /// Writes the values of whole frames behind those in the store.
+    fn store(&mut self, values: &[f32]) -> Result<(), String> {
         let mut shape = self.array.shape().to_vec();
-        let frames = self.held.len() / shape[1..].iter().product::<u64>() as usize;
+        let frames = values.len() / shape[1..].iter().product::<u64>() as usize;
         shape[0] = (self.written + frames) as u64;
-        self.array.set_shape(shape.clone()).map_err(text)?;
         let ranges: Vec<_> = std::iter::once(self.written as u64..shape[0]).chain(shape[1..].iter().map(|count| 0..*count)).collect();
-        self.array.store_array_subset(&ArraySubset::new_with_ranges(&ranges), &self.held).map_err(text)?;
+        self.array.set_shape(shape).map_err(text)?;
+        self.array.store_array_subset(&ArraySubset::new_with_ranges(&ranges), values).map_err(text)?;
         self.written += frames;
-        self.held.clear();
         Ok(())
     }
 }
@@ -191,7 +200,7 @@ impl Column {
 /// Makes the arrays of a store.
 struct Writer<'a> {
     path: &'a Path,
-    store: Arc<FilesystemStore>,
+    store: Arc<RunFolder>,
     scene: &'a Scene,
 }
 
@@ -200,21 +209,21 @@ impl Writer<'_> {
         OutputError::Zarr { path: self.path.to_owned(), reason: reason.to_string() }
     }
 
-    fn built(&self, builder: &mut ArrayBuilder, name: &str) -> Result<Array<FilesystemStore>, OutputError> {
+    fn built(&self, builder: &mut ArrayBuilder, name: &str) -> Result<Array<RunFolder>, OutputError> {
         builder.bytes_to_bytes_codecs(vec![Arc::new(ZstdCodec::new(ZSTD_LEVEL, false))]);
         let array = builder.build(Arc::clone(&self.store), &format!("/{name}")).map_err(|error| self.failed(error))?;
         array.store_metadata_opt(&plain()).map_err(|error| self.failed(error))?;
         Ok(array)
     }
 
-    fn filled<T: Element>(&self, builder: &mut ArrayBuilder, name: &str, values: &[T]) -> Result<Array<FilesystemStore>, OutputError> {
+    fn filled<T: Element>(&self, builder: &mut ArrayBuilder, name: &str, values: &[T]) -> Result<Array<RunFolder>, OutputError> {
         let array = self.built(builder, name)?;
         array.store_array_subset(&array.subset_all(), values).map_err(|error| self.failed(error))?;
         Ok(array)
     }
 
     /// Coordinates of the grids that the sampler's variables and the ground use.
-    fn coordinates(&self, sampler: &Sampler) -> Result<Vec<Array<FilesystemStore>>, OutputError> {
+    fn coordinates(&self, sampler: &Sampler) -> Result<Vec<Array<RunFolder>>, OutputError> {
         let is_used = |grid: &Grid| *grid == Grid::Grass || sampler.variables().any(|variable| variable.field.grid() == *grid);
         let axes = Grid::ALL.into_iter().filter(is_used).flat_map(|grid| grid.axes(self.scene));
         let coordinate = |axis: Axis| {
@@ -226,7 +235,7 @@ impl Writer<'_> {
         axes.map(coordinate).collect()
     }
 
-    fn ground_height(&self, loaded: &LoadedScene) -> Result<Array<FilesystemStore>, OutputError> {
+    fn ground_height(&self, loaded: &LoadedScene) -> Result<Array<RunFolder>, OutputError> {
         let [south, east] = Grid::Grass.axes(self.scene)[..] else { unreachable!("grass has two axes") };
         let meters = |cell: usize, axis: &Axis| (cell as f32 + 0.5) * axis.spacing_m;
         let places = (0..south.count).flat_map(|j| (0..east.count).map(move |i| (i, j)));
@@ -238,7 +247,7 @@ impl Writer<'_> {
         self.filled(&mut builder, "ground_height", &heights_m)
     }
 
-    fn times(&self) -> Result<Array<FilesystemStore>, OutputError> {
+    fn times(&self) -> Result<Array<RunFolder>, OutputError> {
         let attributes = json!({ "units": "s", "standard_name": "time", "long_name": "simulated time since the start", "axis": "T" });
         let mut builder = ArrayBuilder::new(vec![0], vec![TIMES_PER_CHUNK], data_type::float64(), f64::NAN);
         builder.dimension_names(Some(["time"])).attributes(map(attributes));
