@@ -99,7 +99,7 @@ enum Command {
     /// Simulate a scene and serve it to browsers
     #[command(after_help = serve::EXAMPLES)]
     Serve(Box<Serve>),
-    /// Simulate a scene without a page, as fast as possible, and write its fields for xarray or ParaView
+    /// Simulate a scene without a page, and write its fields for xarray or ParaView
     #[command(after_help = run::EXAMPLES)]
     Run(Box<Run>),
     /// Play what happened in a world, exactly, for people to watch

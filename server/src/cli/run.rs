@@ -31,7 +31,7 @@ Examples:
 Fields:
   wind           u, v, w at the centres of the solver's cells (m/s)
   dust           its concentration there, in scenes that release some
-  ground-wind    the same wind at the height of the grass with all its gusts, every 8 cells of grass (m/s)
+  ground-wind    wind at the height of the grass with all its gusts, every 8 cells of grass (m/s)
   bend           bending angle theta of each cell of grass, relative to its lean in the wind (rad)
   bend-velocity  bending velocity omega_x, omega_z, in the direction of the bend (rad/s)
   lean           lean_x, lean_z, the whole lean of the grass with that in the wind (rad)
@@ -46,8 +46,8 @@ A drive file lists drivers with their inputs, each of which holds until the next
     { at_secs = 9.0, brake = 1.0 },          brake from 0 to 1
   ]
 
-The result is that of a server that receives the same inputs at the same steps, to the last bit; it is
-the same on any number of threads. After Ctrl-C the files can be read up to the last frame.";
+The result is that of a server that receives the same inputs at the same steps, to the last bit, on
+any number of threads. After Ctrl-C the files can be read up to the last frame.";
 
 /// Arguments of `prairie run`.
 #[derive(Debug, Args)]

@@ -8,6 +8,7 @@ mod error;
 mod grids;
 mod outputs;
 mod replace;
+#[cfg(any(feature = "zarr", test))]
 mod rounding;
 #[cfg(feature = "zarr")]
 mod run_folder;
@@ -22,8 +23,7 @@ pub mod zarr;
 pub use error::OutputError;
 pub use grids::{Axis, Grid};
 pub use outputs::Outputs;
-pub use rounding::ALLOWED_ERROR;
 pub use sampler::{Frame, Sampler, VALUES_LIMIT};
 pub use sink::Sink;
 pub use stations::{HEADER, Station, StationFile};
-pub use variables::{Field, VARIABLES, Variable};
+pub use variables::{ALLOWED_ERROR, Field, VARIABLES, Variable};

@@ -2,9 +2,6 @@
 //!
 //! Values become the nearest multiples of a power of two, whose low bits are zero: plain numbers for every reader, without a codec that it would have to know.
 
-/// Smallest and largest absolute error that may be asked for, in the units of a variable.
-pub const ALLOWED_ERROR: std::ops::RangeInclusive<f32> = 1e-6..=1e3;
-
 /// Distance between the values that remain: the largest power of two of at most twice the error.
 pub(super) fn step(error: f32) -> f32 {
     // Removes all bits but those of the exponent.

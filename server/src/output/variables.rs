@@ -3,7 +3,11 @@
 use super::grids::Grid;
 use prairie_core::scene::Scene;
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
+
+/// Smallest and largest absolute error to which a field may be rounded, in its unit.
+pub const ALLOWED_ERROR: RangeInclusive<f32> = 1e-6..=1e3;
 
 /// A field that is asked for by one word: one variable, or the components of a vector.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -125,9 +125,9 @@ impl ZarrStore {
 
     fn append_times(&mut self, frames: usize) -> Result<(), String> {
         self.times.set_shape(vec![frames as u64]).map_err(text)?;
-        let place = ArraySubset::new_with_ranges(&[self.committed as u64..frames as u64]);
+        let place = self.committed as u64..frames as u64;
         let times = std::mem::take(&mut self.new_times);
-        self.times.store_array_subset(&place, &times).map_err(text)
+        self.times.store_array_subset(&ArraySubset::new_with_ranges(std::slice::from_ref(&place)), &times).map_err(text)
     }
 }
 
