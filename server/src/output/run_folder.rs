@@ -12,6 +12,8 @@ use zarrs::storage::{
 
 /// Name of the files of metadata, which appear completely or not at all.
 pub(super) const METADATA: &str = "zarr.json";
+/// Their name while they are written.
+pub(super) const UNFINISHED: &str = "zarr.json.new";
 
 /// A folder of chunks and metadata.
 #[derive(Debug)]
@@ -44,7 +46,7 @@ impl WritableStorageTraits for RunFolder {
         if !path.ends_with(METADATA) {
             return Ok(write(&path, &value)?);
         }
-        let temporary = path.with_extension("new");
+        let temporary = path.with_file_name(UNFINISHED);
         write(&temporary, &value)?;
         Ok(fs::rename(&temporary, &path)?)
     }

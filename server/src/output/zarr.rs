@@ -8,7 +8,7 @@ use super::error::OutputError;
 use super::grids::{Axis, Grid};
 use super::replace::new_folder;
 use super::rounding::{rounded, step};
-use super::run_folder::{METADATA, RunFolder};
+use super::run_folder::{METADATA, RunFolder, UNFINISHED};
 use super::sampler::{Frame, Sampler};
 use super::sink::Sink;
 use super::variables::{Field, VARIABLES, Variable};
@@ -52,6 +52,8 @@ pub struct ZarrStore {
     new_times: Vec<f64>,
     /// Number of frames that are in the store.
     committed: usize,
+    /// Whether a write has failed.
+    has_failed: bool,
 }
 
 /// The group that holds all arrays.
@@ -81,8 +83,9 @@ impl ZarrStore {
     pub fn create(path: &Path, loaded: &LoadedScene, sampler: &Sampler, errors: &Errors, overwrite: bool) -> Result<Self, OutputError> {
         let names: Vec<_> = VARIABLES.iter().map(|variable| variable.name).collect();
         let coordinates: Vec<_> = Grid::ALL.iter().flat_map(|grid| grid.axes(&loaded.scene)).map(|axis| axis.name).collect();
-        let is_ours =
-            |name: &str| [METADATA, "time", "ground_height"].contains(&name) || names.contains(&name) || coordinates.contains(&name);
+        let is_ours = |name: &str| {
+            [METADATA, UNFINISHED, "time", "ground_height"].contains(&name) || names.contains(&name) || coordinates.contains(&name)
+        };
         new_folder(path, overwrite, "Zarr store", METADATA, is_ours)?;
         let failed = |reason: &dyn Display| OutputError::Zarr { path: path.to_owned(), reason: reason.to_string() };
         let store = Arc::new(RunFolder::new(path).map_err(|error| failed(&error))?);
@@ -94,13 +97,22 @@ impl ZarrStore {
         writer.coordinates(sampler)?.iter().chain([&ground_height]).for_each(|array| root.note(array));
         let times = writer.times()?;
         let columns = sampler.variables().map(|variable| writer.column(variable, errors)).collect::<Result<_, _>>()?;
-        let mut store = Self { path: path.to_owned(), root, columns, times, new_times: Vec::new(), committed: 0 };
+        let mut store = Self { path: path.to_owned(), root, columns, times, new_times: Vec::new(), committed: 0, has_failed: false };
         store.write_lengths()?;
         Ok(store)
     }
 
     fn failed(&self, reason: impl Display) -> OutputError {
         OutputError::Zarr { path: self.path.clone(), reason: reason.to_string() }
+    }
+
+    /// Takes a frame.
+    fn add(&mut self, frame: &Frame) -> Result<(), OutputError> {
+        for (number, values) in frame.values.iter().enumerate() {
+            self.columns[number].add(values).map_err(|reason| self.failed(reason))?;
+        }
+        self.new_times.push(frame.time_secs);
+        if self.new_times.len() == FRAMES_PER_COMMIT { self.commit() } else { Ok(()) }
     }
 
     /// Writes what is held, and then the new lengths.
@@ -133,15 +145,14 @@ impl ZarrStore {
 
 impl Sink for ZarrStore {
     fn write(&mut self, frame: &Frame) -> Result<(), OutputError> {
-        for (number, values) in frame.values.iter().enumerate() {
-            self.columns[number].add(values).map_err(|reason| self.failed(reason))?;
-        }
-        self.new_times.push(frame.time_secs);
-        if self.new_times.len() == FRAMES_PER_COMMIT { self.commit() } else { Ok(()) }
+        let added = self.add(frame);
+        self.has_failed |= added.is_err();
+        added
     }
 
+    /// After a failure the store keeps the lengths that it had: further frames may be incomplete.
     fn finish(mut self: Box<Self>) -> Result<(), OutputError> {
-        if self.new_times.is_empty() { Ok(()) } else { self.commit() }
+        if self.has_failed || self.new_times.is_empty() { Ok(()) } else { self.commit() }
     }
 }
 

@@ -160,3 +160,22 @@ fn a_store_can_be_read_while_it_is_written_and_grass_at_rest_takes_no_space() {
     std::fs::write(path.join("notes.txt"), "mine").unwrap();
     assert!(matches!(create(true), Some(OutputError::NotOurs { .. })) && path.join("notes.txt").exists());
 }
+
+#[test]
+fn a_store_keeps_its_length_when_a_file_cannot_be_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, loaded) = (folder.path().join("run.zarr"), scene());
+    let sampler = Sampler::new(&loaded, &FIELDS).unwrap();
+    let mut store = ZarrStore::create(&path, &loaded, &sampler, &Errors::new(), false).unwrap();
+    let frame = sampler.sample(&world());
+    (0..FRAMES_PER_COMMIT).for_each(|_| store.write(&frame).unwrap());
+    std::fs::remove_dir_all(path.join("w/c/1")).ok();
+    std::fs::write(path.join("w/c/1"), "in the way").unwrap();
+    let outcome: Result<Vec<()>, _> = (0..FRAMES_PER_COMMIT).map(|_| store.write(&frame)).collect();
+    let error = outcome.unwrap_err().to_string();
+    assert!(error.starts_with("the Zarr store `") && error.contains("run.zarr` cannot be written: "), "{error}");
+    Box::new(store).finish().unwrap();
+    for name in NAMES.into_iter().chain(["time"]) {
+        assert_eq!(open(&path, name).shape()[0] as usize, FRAMES_PER_COMMIT, "{name}");
+    }
+}
