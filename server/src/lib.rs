@@ -14,6 +14,7 @@
 //! - [prairie_client](../prairie_client/index.html): the mirror of a server's world, and the renderer.
 //! - [tests](../tests/index.html): tests, comparisons and pictures.
 
+pub mod batch;
 pub mod bend;
 #[cfg(feature = "charts")]
 pub mod charts;
@@ -29,6 +30,7 @@ mod log_limit;
 pub mod metrics;
 pub mod net;
 pub mod objects;
+pub mod output;
 pub mod plan;
 pub mod plants;
 pub mod race;

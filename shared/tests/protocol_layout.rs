@@ -30,7 +30,9 @@ fn generated() -> Value {
     trace!(WindAdvection, WindBoundary, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime);
     trace!(ModelUse, ClientMessage, ServerMessage);
     let types = tracer.registry().expect("every enum inside a message is in the list above");
-    json!({ "protocol": PROTOCOL, "types": types })
+    let mut layout = json!({ "protocol": PROTOCOL, "types": types });
+    layout.sort_all_objects();
+    layout
 }
 
 #[test]

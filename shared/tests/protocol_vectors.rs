@@ -352,9 +352,10 @@ fn file() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../server/docs/protocol-vectors.json")
 }
 
-/// The file's text: an example a line.
+/// The file's text: an example a line, with its fields by name, in whatever order serde_json is built to keep them.
 fn text() -> String {
-    let section = |(name, examples): (&str, Vec<Value>)| {
+    let section = |(name, mut examples): (&str, Vec<Value>)| {
+        examples.iter_mut().for_each(Value::sort_all_objects);
         let lines: Vec<String> = examples.iter().map(|example| format!("    {example}")).collect();
         format!("  \"{name}\": [\n{}\n  ]", lines.join(",\n"))
     };

@@ -19,6 +19,7 @@ mod number;
 mod picture;
 mod print;
 mod replay;
+mod run;
 mod scenes;
 mod schema;
 mod serve;
@@ -53,6 +54,7 @@ use new::New;
 use picture::Picture;
 pub(crate) use print::complain;
 use replay::ReplayArguments;
+use run::Run;
 use scenes::Scenes;
 use schema::Schema;
 use serve::Serve;
@@ -97,6 +99,9 @@ enum Command {
     /// Simulate a scene and serve it to browsers
     #[command(after_help = serve::EXAMPLES)]
     Serve(Box<Serve>),
+    /// Simulate a scene without a page, and write its fields for xarray or ParaView
+    #[command(after_help = run::EXAMPLES)]
+    Run(Box<Run>),
     /// Play what happened in a world, exactly, for people to watch
     #[command(after_help = replay::EXAMPLES)]
     Replay(ReplayArguments),
@@ -168,6 +173,7 @@ pub(crate) fn run() -> anyhow::Result<ExitCode> {
     match command {
         Command::Serve(serve) if is_named || !serve.has_word() => serve.run().map(done),
         Command::Serve(serve) => serve.run().map(done).map_err(unknown_word::suggest_commands),
+        Command::Run(run) => run.run().map(done),
         Command::Replay(replay) => replay.run().map(done),
         Command::Diff(diff) => diff.run(),
         Command::Scenes(scenes) => scenes.run().map(done),

@@ -1,7 +1,6 @@
 //! Signals that stop the server: Ctrl-C, and on Unix SIGTERM and SIGHUP.
 
 use std::io;
-#[cfg(feature = "picture")]
 use std::sync::{
     Arc,
     atomic::{AtomicBool, Ordering::Relaxed},
@@ -11,7 +10,6 @@ use std::sync::{
 ///
 /// # Errors
 /// When the system refuses the handlers or the thread that waits for them.
-#[cfg(feature = "picture")]
 pub(super) fn stop_flag() -> io::Result<Arc<AtomicBool>> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
     let mut signal = runtime.block_on(async { StopSignal::install() })?;

@@ -6,8 +6,12 @@ use std::sync::LazyLock;
 pub(super) const SHORT: &str = env!("CARGO_PKG_VERSION");
 
 /// Optional parts of the program, and whether this one has them.
-const FEATURES: &[(&str, bool)] =
-    &[("acme", cfg!(feature = "acme")), ("picture", cfg!(feature = "picture")), ("rerun", cfg!(feature = "rerun"))];
+const FEATURES: &[(&str, bool)] = &[
+    ("acme", cfg!(feature = "acme")),
+    ("picture", cfg!(feature = "picture")),
+    ("rerun", cfg!(feature = "rerun")),
+    ("zarr", cfg!(feature = "zarr")),
+];
 
 /// Longest name of a commit (hex digits), that of SHA-256.
 const LONGEST: usize = 64;

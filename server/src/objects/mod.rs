@@ -11,6 +11,7 @@ mod spawn;
 
 pub use checkpoint::{ObjectsError, ObjectsState};
 pub use prairie_vehicles::Environment;
+pub use spawn::center_for;
 
 use crate::checksum::Checksum;
 use crate::race::DrivenMotion;

@@ -50,6 +50,11 @@ pub(super) fn find(
     clear.find(is_gentle).or(steep)
 }
 
+/// The centre around which an object appears at `at_m`, heading east, if that is free and far enough from the western edge.
+pub fn center_for([x_m, z_m]: [f32; 2]) -> [f32; 2] {
+    [(x_m - FIRST_M).max(0.0), z_m]
+}
+
 fn spiral(center: [f32; 2], spacing_m: f32, n: u32) -> [f32; 2] {
     let radius = (FIRST_M * FIRST_M + spacing_m * spacing_m * n as f32).sqrt();
     let (sin, cos) = (n as f32 * GOLDEN_RAD).sin_cos();

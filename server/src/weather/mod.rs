@@ -335,9 +335,14 @@ impl Weather {
         sum.add([friction_m_per_s.to_bits()]);
     }
 
-    /// Wind above the ground at the cell centres (m/s).
-    fn velocities(&self) -> Vec<Vec3> {
+    /// Wind above the ground at the cell centres (m/s), x fastest, then y, then z, as the solver has it; the [field](Self::field) is that of the newest frame.
+    pub fn velocities(&self) -> Vec<Vec3> {
         self.terrain.above_ground(self.air.cell_velocities().collect(), Vec3::lerp)
+    }
+
+    /// Concentration of dust above the ground at the cell centres; `None` in a scene without dust.
+    pub fn dust(&self) -> Option<Vec<f32>> {
+        Some(self.terrain.above_ground(self.air.dust()?.collect(), |a, b, t| a + (b - a) * t))
     }
 
     /// Releases the wind of this moment as the frame of `tick`.
@@ -351,8 +356,7 @@ impl Weather {
                 codes[plane * cells + at] = steps.wind_code(component);
             }
         }
-        if let Some(dust) = self.air.dust() {
-            let dust = self.terrain.above_ground(dust.collect(), |a, b, t| a + (b - a) * t);
+        if let Some(dust) = self.dust() {
             codes[3 * cells..].iter_mut().zip(dust).for_each(|(code, density)| *code = steps.dust_code(density));
         }
         self.hold(WindFrame { tick, cells: [nx, ny, nz].map(|n| n as u32), turbulence: self.turbulence, codes });

@@ -226,6 +226,11 @@ impl World {
         self.newest_client
     }
 
+    /// The wind.
+    pub fn weather(&self) -> &Weather {
+        &self.weather
+    }
+
     /// The bend field and everything that acts on it.
     pub fn bend(&self) -> &BendSimulation {
         &self.bend

@@ -44,7 +44,7 @@ impl<'t> Positions<'t> {
     }
 
     /// A fault of the byte range `span`.
-    pub(super) fn spanning(&self, span: Range<usize>, path: &str, message: impl Into<String>) -> SceneFault {
+    pub fn spanning(&self, span: Range<usize>, path: &str, message: impl Into<String>) -> SceneFault {
         let start = floor_char(self.text, span.start);
         let line = self.lines.partition_point(|&first| first <= start);
         let line_start = self.lines[line - 1];

@@ -85,6 +85,7 @@ fn generated() -> Value {
     schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
     schema["title"] = json!("Prairie scene");
     schema["description"] = json!("A scene of Prairie. Units are metres, seconds and radians; X points east, Z points south.");
+    schema.sort_all_objects();
     schema
 }
 

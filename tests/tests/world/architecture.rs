@@ -150,6 +150,16 @@ fn only_inspect_uses_rerun() -> Result<()> {
 }
 
 #[test]
+fn only_output_uses_zarrs() -> Result<()> {
+    let files = files_using("zarrs")?;
+    ensure!(!files.is_empty(), "no file uses zarrs");
+    for file in files {
+        assert!(file.starts_with("server/src/output"), "{} uses zarrs", file.display());
+    }
+    Ok(())
+}
+
+#[test]
 fn only_the_studio_the_charts_and_their_commands_use_the_renderer() -> Result<()> {
     let allowed = [
         "server/src/studio",
