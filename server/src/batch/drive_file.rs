@@ -122,6 +122,9 @@ fn parse(text: &str, scene: &Scene) -> Result<Vec<Driver>, Vec<SceneFault>> {
     Ok(listed.driver.into_iter().map(Driver::from).collect())
 }
 
+/// Latest time of a driver (s): that of the longest run.
+const LATEST_SECS: f64 = 1e6;
+
 /// Checks the values of a driver, which is at `path` of the file.
 fn check(driver: &ListedDriver, path: &str, scene: &Scene, note: &mut dyn FnMut(&str, String)) {
     let extent_m = scene.extent_m();
@@ -130,8 +133,8 @@ fn check(driver: &ListedDriver, path: &str, scene: &Scene, note: &mut dyn FnMut(
             note(&format!("{path}.at_m[{axis}]"), format!("is {at_m}; allowed: 0 to {}", extent_m[axis]));
         }
     }
-    if !(driver.from_secs.is_finite() && driver.from_secs >= 0.0) {
-        note(&format!("{path}.from_secs"), format!("is {}; allowed: 0 or more", driver.from_secs));
+    if !(0.0..=LATEST_SECS).contains(&driver.from_secs) {
+        note(&format!("{path}.from_secs"), format!("is {}; allowed: 0 to {LATEST_SECS}", driver.from_secs));
     }
     let mut earliest_secs = driver.from_secs;
     for (number, input) in driver.inputs.iter().enumerate() {

@@ -93,12 +93,13 @@ pub(super) struct Run {
 impl Run {
     pub(super) fn run(&self) -> Result<()> {
         ensure!(self.out.is_none() || cfg!(feature = "zarr"), "--out: this binary was built without Zarr; build it with `--features zarr`");
-        let stop = stop_flag()?;
         let loaded = scenes::load(&self.scene)?;
         let drivers = self.drive.as_ref().map(|path| read_drivers(path, &loaded.scene)).transpose()?.unwrap_or_default();
         let mut drivers = Drivers::new(&drivers, loaded.scene.tick_hz);
-        let outputs = self.outputs(&loaded)?;
         let mut world = World::new(&loaded.scene, loaded.maps()).context("the scene makes no world")?;
+        // From here on a signal ends the run in good order; before, nothing is written.
+        let stop = stop_flag()?;
+        let outputs = self.outputs(&loaded)?;
         let schedule = self.schedule(loaded.scene.tick_hz);
         let (begun, mut bar) = (Instant::now(), Bar::new(schedule.ticks, loaded.scene.dt_secs()));
         let ticks = run(&mut world, &mut drivers, schedule, outputs, &stop, |ticks| bar.show(ticks))?;
@@ -126,6 +127,10 @@ impl Run {
             anyhow::bail!("--error: `{field}` is not written; --fields names what is");
         }
         let mut outputs = Outputs::default();
+        // First, since its stations may be wrong, which nothing else has to be replaced for.
+        if let Some(file) = &self.stations {
+            outputs = outputs.with_stations(StationFile::create(file, loaded, &self.station, self.overwrite)?);
+        }
         if self.out.is_some() || self.vtk.is_some() {
             let sampler = Sampler::new(loaded, &fields)?;
             let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
@@ -134,9 +139,6 @@ impl Run {
                 sinks.push(Box::new(VtkFolder::create(folder, loaded, &sampler, self.overwrite)?));
             }
             outputs = outputs.with_fields(sampler, sinks)?;
-        }
-        if let Some(file) = &self.stations {
-            outputs = outputs.with_stations(StationFile::create(file, loaded, &self.station, self.overwrite)?);
         }
         Ok(outputs)
     }

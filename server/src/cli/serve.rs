@@ -200,7 +200,7 @@ impl Serve {
 }
 
 /// Lets a write beyond the allowed size of a file fail instead of ending the program.
-fn survive_full_files() {
+pub(super) fn survive_full_files() {
     #[cfg(target_os = "linux")]
     {
         use tokio::signal::unix::{SignalKind, signal};

@@ -1,18 +1,22 @@
 //! Signals that stop the server: Ctrl-C, and on Unix SIGTERM and SIGHUP.
 
+use super::serve::survive_full_files;
 use std::io;
 use std::sync::{
     Arc,
     atomic::{AtomicBool, Ordering::Relaxed},
 };
 
-/// Flag set by a stop signal, for work outside an async runtime.
+/// Flag set by a stop signal, for work outside an async runtime. From then on, writes beyond the allowed size of a file fail instead of ending the program.
 ///
 /// # Errors
 /// When the system refuses the handlers or the thread that waits for them.
 pub(super) fn stop_flag() -> io::Result<Arc<AtomicBool>> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build()?;
-    let mut signal = runtime.block_on(async { StopSignal::install() })?;
+    let mut signal = runtime.block_on(async {
+        survive_full_files();
+        StopSignal::install()
+    })?;
     let flag = Arc::new(AtomicBool::new(false));
     let set = Arc::clone(&flag);
     std::thread::Builder::new().name("signals".to_owned()).spawn(move || {

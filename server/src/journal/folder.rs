@@ -32,8 +32,10 @@ pub struct Folder {
 /// Name of the sub-folder of a scene: its own name, and a hash of the scene, its maps, and the version of the state.
 pub(super) fn name_of(scene: &LoadedScene) -> String {
     let mut hash = Context::new(&SHA256);
+    // Budgets that are left in a scene are those of its clients.
+    let simulated = Scene { budget: Budget::default(), ..scene.scene.clone() };
     let parts = [
-        postcard::to_allocvec(&scene.scene).expect("a scene is plain data"),
+        postcard::to_allocvec(&simulated).expect("a scene is plain data"),
         scene.height_png.clone(),
         scene.covering_png.clone(),
         scene.nutrient_png.clone(),

@@ -2,19 +2,32 @@
 
 use super::error::OutputError;
 use std::fs::{self, File, OpenOptions};
+use std::io::{self, Read as _};
 use std::path::Path;
 
-/// A new file at `path`, in place of an existing one only if `overwrite`.
+/// A new file at `path`, or an empty one; or in place of one that begins with `mark`, as those of an earlier run do, if `overwrite`.
 ///
 /// # Errors
-/// When it exists, or cannot be written.
-pub(super) fn new_file(path: &Path, overwrite: bool) -> Result<File, OutputError> {
-    if !overwrite && path.exists() {
-        return Err(OutputError::Exists { path: path.to_owned() });
+/// When there is anything else, or it cannot be written.
+pub(super) fn new_file(path: &Path, overwrite: bool, kind: &'static str, mark: &str) -> Result<File, OutputError> {
+    if path.exists() {
+        if !path.is_file() || !begins_with(path, mark).map_err(OutputError::file(path))? {
+            return Err(OutputError::NotOurs { path: path.to_owned(), kind });
+        }
+        if !overwrite {
+            return Err(OutputError::Exists { path: path.to_owned() });
+        }
     }
     let mut options = OpenOptions::new();
     options.write(true).create(true).truncate(true).create_new(!overwrite);
     options.open(path).map_err(OutputError::file(path))
+}
+
+/// Whether a file is empty or begins with `mark`.
+fn begins_with(path: &Path, mark: &str) -> io::Result<bool> {
+    let mut beginning = Vec::new();
+    File::open(path)?.take(mark.len() as u64).read_to_end(&mut beginning)?;
+    Ok(beginning.is_empty() || beginning == mark.as_bytes())
 }
 
 /// A folder at `path` without files, new or empty; or with those that `is_ours` removed if `overwrite` and one of them is `mark`.
@@ -77,9 +90,15 @@ mod tests {
         assert_eq!(fs::read_dir(&path).unwrap().count(), 0);
 
         let file = folder.path().join("stations.csv");
-        drop(new_file(&file, false).unwrap());
-        assert!(matches!(new_file(&file, false), Err(OutputError::Exists { .. })));
-        new_file(&file, true).unwrap();
+        let open = |overwrite| new_file(&file, overwrite, "file of stations", "time_s,");
+        drop(open(false).unwrap());
+        fs::write(&file, "time_s,station\n").unwrap();
+        assert!(matches!(open(false), Err(OutputError::Exists { .. })));
+        drop(open(true).unwrap());
+        assert_eq!(fs::read_to_string(&file).unwrap(), "");
+        fs::write(&file, "time_t").unwrap();
+        assert!(matches!(open(true), Err(OutputError::NotOurs { .. })), "it begins otherwise");
+        assert_eq!(fs::read_to_string(&file).unwrap(), "time_t");
         assert!(matches!(new_folder(&file, true, "store", "mark", |_| true), Err(OutputError::NotOurs { .. })));
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{self, ErrorKind};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use zarrs::filesystem::{FilesystemStore, FilesystemStoreCreateError};
 use zarrs::storage::byte_range::ByteRangeIterator;
 use zarrs::storage::{
@@ -10,10 +10,10 @@ use zarrs::storage::{
     store_set_partial_many,
 };
 
-/// Name of the files of metadata, which appear completely or not at all.
+/// Name of the files of metadata.
 pub(super) const METADATA: &str = "zarr.json";
-/// Their name while they are written.
-pub(super) const UNFINISHED: &str = "zarr.json.new";
+/// Ending of the name of a file while it is written: files appear completely or not at all.
+const UNFINISHED: &str = ".new";
 
 /// A folder of chunks and metadata.
 #[derive(Debug)]
@@ -43,10 +43,9 @@ fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
 impl WritableStorageTraits for RunFolder {
     fn set(&self, key: &StoreKey, value: Bytes) -> Result<(), StorageError> {
         let path = self.0.key_to_fspath(key);
-        if !path.ends_with(METADATA) {
-            return Ok(write(&path, &value)?);
-        }
-        let temporary = path.with_file_name(UNFINISHED);
+        let mut temporary = path.clone().into_os_string();
+        temporary.push(UNFINISHED);
+        let temporary = PathBuf::from(temporary);
         write(&temporary, &value)?;
         Ok(fs::rename(&temporary, &path)?)
     }

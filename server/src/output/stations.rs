@@ -71,7 +71,7 @@ impl StationFile {
     pub fn create(path: &Path, loaded: &LoadedScene, stations: &[Station], overwrite: bool) -> Result<Self, OutputError> {
         let extent_m = loaded.scene.extent_m();
         for (number, Station { name, at_m }) in stations.iter().enumerate() {
-            if (0..2).any(|axis| !(0.0..=extent_m[axis]).contains(&at_m[axis])) {
+            if (0..2).any(|axis| !(0.0..extent_m[axis]).contains(&at_m[axis])) {
                 return Err(OutputError::Station { name: name.clone(), at_m: *at_m, extent_m });
             }
             if stations[..number].iter().any(|other| other.name == *name) {
@@ -84,7 +84,7 @@ impl StationFile {
             ground_m: ground_m(&loaded.height, station.at_m),
             height_m: properties.blade_height_m(station.at_m),
         };
-        let mut file = BufWriter::new(new_file(path, overwrite)?);
+        let mut file = BufWriter::new(new_file(path, overwrite, "file of stations", HEADER)?);
         writeln!(file, "{HEADER}").map_err(OutputError::file(path))?;
         let stations = stations.iter().map(site).collect();
         Ok(Self { path: path.to_owned(), file, stations, dt_secs: f64::from(loaded.scene.dt_secs()) })

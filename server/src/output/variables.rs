@@ -51,14 +51,26 @@ const fn row(field: Field, axis: Option<usize>, name: &'static str, units: &'sta
 /// All variables, in the order of the fields.
 pub const VARIABLES: [Variable; 11] = [
     Variable { standard_name: Some("eastward_wind"), ..row(Field::Wind, Some(0), "u", "m s-1", "wind towards the east") },
-    Variable { standard_name: Some("upward_air_velocity"), ..row(Field::Wind, Some(1), "v", "m s-1", "wind upwards from the ground") },
+    row(Field::Wind, Some(1), "v", "m s-1", "wind away from the ground, relative to its slope where the box follows the land"),
     row(Field::Wind, Some(2), "w", "m s-1", "wind towards the south"),
     row(Field::Dust, None, "dust", "1", "concentration of dust"),
     row(Field::GroundWind, Some(0), "ground_u", "m s-1", "wind towards the east at the height of the grass"),
     row(Field::GroundWind, Some(2), "ground_w", "m s-1", "wind towards the south at the height of the grass"),
     row(Field::Bend, None, "theta", "rad", "bending angle of the grass relative to its lean in the wind"),
-    row(Field::BendVelocity, Some(0), "omega_x", "rad s-1", "bending velocity of the grass towards the east"),
-    row(Field::BendVelocity, Some(2), "omega_z", "rad s-1", "bending velocity of the grass towards the south"),
+    row(
+        Field::BendVelocity,
+        Some(0),
+        "omega_x",
+        "rad s-1",
+        "bending velocity of the grass towards the east, at least 0.5 rad/s in size where it lies flattened",
+    ),
+    row(
+        Field::BendVelocity,
+        Some(2),
+        "omega_z",
+        "rad s-1",
+        "bending velocity of the grass towards the south, at least 0.5 rad/s in size where it lies flattened",
+    ),
     row(Field::Lean, Some(0), "lean_x", "rad", "lean of the grass towards the east, that in the wind included"),
     row(Field::Lean, Some(2), "lean_z", "rad", "lean of the grass towards the south, that in the wind included"),
 ];

@@ -62,7 +62,13 @@ impl VtkFolder {
     /// # Errors
     /// When the folder has files, unless they are those of an earlier run and `overwrite`; when it cannot be written.
     pub fn create(path: &Path, loaded: &LoadedScene, sampler: &Sampler, overwrite: bool) -> Result<Self, OutputError> {
-        let is_ours = |name: &str| name == MARK || name.ends_with(".pvd") || name.ends_with(".vti");
+        let is_series = |name: &str, grid: Grid| {
+            name.strip_prefix(grid.name()).is_some_and(|rest| {
+                let number = rest.strip_prefix('_').and_then(|rest| rest.strip_suffix(".vti"));
+                rest == ".pvd" || number.is_some_and(|number| !number.is_empty() && number.bytes().all(|byte| byte.is_ascii_digit()))
+            })
+        };
+        let is_ours = |name: &str| name == MARK || Grid::ALL.into_iter().any(|grid| is_series(name, grid));
         new_folder(path, overwrite, "folder of VTK files", MARK, is_ours)?;
         let mark = path.join(MARK);
         let about = format!("VTK files of the scene {} by Prairie {}\n", loaded.name, env!("CARGO_PKG_VERSION"));
@@ -112,10 +118,19 @@ impl Series {
         Ok(())
     }
 
-    /// Writes an entry over the end of the collection, and a new end behind it.
+    /// Writes an entry over the end of the collection, and a new end behind it; the old end again if that fails.
     fn enter(&mut self, entry: &str) -> std::io::Result<()> {
-        self.collection.seek(SeekFrom::Start(self.length))?;
-        self.collection.write_all(format!("{entry}{}", COLLECTION[1]).as_bytes())
+        let length = self.length;
+        let mut write = |text: &str| {
+            self.collection.seek(SeekFrom::Start(length))?;
+            self.collection.write_all(text.as_bytes())
+        };
+        let entered = write(&format!("{entry}{}", COLLECTION[1]));
+        if entered.is_err() {
+            write(COLLECTION[1])?;
+            self.collection.set_len(length + COLLECTION[1].len() as u64)?;
+        }
+        entered
     }
 
     /// The text of a file with the values of a time.

@@ -8,8 +8,8 @@ use super::error::OutputError;
 use super::grids::{Axis, Grid};
 use super::replace::new_folder;
 use super::rounding::{rounded, step};
-use super::run_folder::{METADATA, RunFolder, UNFINISHED};
-use super::sampler::{Frame, Sampler};
+use super::run_folder::{METADATA, RunFolder};
+use super::sampler::{Frame, Sampler, VALUES_LIMIT};
 use super::sink::Sink;
 use super::variables::{Field, VARIABLES, Variable};
 use crate::scenes::LoadedScene;
@@ -26,6 +26,9 @@ use zarrs::metadata::v3::AdditionalFieldV3;
 
 /// Frames after which the arrays get their new lengths; a multiple of the frames of every chunk.
 pub const FRAMES_PER_COMMIT: usize = 16;
+
+/// File by which the store of an earlier run is known: other stores have variables of the same names.
+const MARK: &str = ".prairie-zarr";
 
 /// Values of a variable that are held in memory until they are a chunk, at most (bytes).
 const HELD_BYTES: usize = 1 << 20;
@@ -84,17 +87,21 @@ impl ZarrStore {
         let names: Vec<_> = VARIABLES.iter().map(|variable| variable.name).collect();
         let coordinates: Vec<_> = Grid::ALL.iter().flat_map(|grid| grid.axes(&loaded.scene)).map(|axis| axis.name).collect();
         let is_ours = |name: &str| {
-            [METADATA, UNFINISHED, "time", "ground_height"].contains(&name) || names.contains(&name) || coordinates.contains(&name)
+            [MARK, METADATA, "zarr.json.new", "time", "ground_height"].contains(&name)
+                || names.contains(&name)
+                || coordinates.contains(&name)
         };
-        new_folder(path, overwrite, "Zarr store", METADATA, is_ours)?;
+        new_folder(path, overwrite, "Zarr store", MARK, is_ours)?;
+        let mark = path.join(MARK);
+        let about = format!("Zarr store of the scene {} by Prairie {}\n", loaded.name, env!("CARGO_PKG_VERSION"));
+        std::fs::write(&mark, about).map_err(OutputError::file(&mark))?;
         let failed = |reason: &dyn Display| OutputError::Zarr { path: path.to_owned(), reason: reason.to_string() };
         let store = Arc::new(RunFolder::new(path).map_err(|error| failed(&error))?);
         let mut root = Root { store: Arc::clone(&store), attributes: attributes_of_run(loaded, errors), arrays: Map::new() };
-        // The first file: by it the folder is known as a store.
         root.write().map_err(|error| failed(&error))?;
         let writer = Writer { path, store, scene: &loaded.scene };
         let ground_height = writer.ground_height(loaded)?;
-        writer.coordinates(sampler)?.iter().chain([&ground_height]).for_each(|array| root.note(array));
+        writer.coordinates(sampler)?.iter().chain(&ground_height).for_each(|array| root.note(array));
         let times = writer.times()?;
         let columns = sampler.variables().map(|variable| writer.column(variable, errors)).collect::<Result<_, _>>()?;
         let mut store = Self { path: path.to_owned(), root, columns, times, new_times: Vec::new(), committed: 0, has_failed: false };
@@ -246,8 +253,17 @@ impl Writer<'_> {
         axes.map(coordinate).collect()
     }
 
-    fn ground_height(&self, loaded: &LoadedScene) -> Result<Array<RunFolder>, OutputError> {
+    /// The elevation of the ground; `None` where the land has more cells than a variable may have.
+    fn ground_height(&self, loaded: &LoadedScene) -> Result<Option<Array<RunFolder>>, OutputError> {
         let [south, east] = Grid::Grass.axes(self.scene)[..] else { unreachable!("grass has two axes") };
+        if south.count.saturating_mul(east.count) > VALUES_LIMIT {
+            tracing::warn!(
+                "the land has {} × {} cells; its height is left out, since a variable has at most {VALUES_LIMIT}",
+                south.count,
+                east.count
+            );
+            return Ok(None);
+        }
         let meters = |cell: usize, axis: &Axis| (cell as f32 + 0.5) * axis.spacing_m;
         let places = (0..south.count).flat_map(|j| (0..east.count).map(move |i| (i, j)));
         let heights_m: Vec<f32> = places.map(|(i, j)| loaded.height.height_m(meters(i, &east), meters(j, &south))).collect();
@@ -255,7 +271,7 @@ impl Writer<'_> {
         let (shape, chunks) = (shape(&[south, east]), self.chunk(&[south, east]));
         let mut builder = ArrayBuilder::new(shape, chunks, data_type::float32(), f32::NAN);
         builder.dimension_names(Some([south.name, east.name])).attributes(map(attributes));
-        self.filled(&mut builder, "ground_height", &heights_m)
+        self.filled(&mut builder, "ground_height", &heights_m).map(Some)
     }
 
     fn times(&self) -> Result<Array<RunFolder>, OutputError> {

@@ -23,7 +23,8 @@ pub struct BladePlan {
     pub segments: [u32; 2],
     /// Root mean square error of the tip over a second of swing, relative to the length.
     pub swing_error: f64,
-    /// Largest distance of the coarser strip from its curve, relative to the length; `None` where the quality of the picture decides.
+    /// Largest distance of the coarser strip from its curve, relative to the length, apart from strips whose segments the quality of the picture decides; `None`
+    /// where it decides both.
     pub strip_error: Option<f64>,
     /// Fields that the plan has set.
     pub planned: Vec<String>,
@@ -65,7 +66,7 @@ pub(super) fn plan(scene: &Scene, stated: &[String], tolerance: Option<f64>, win
     if let Some(tolerance) = tolerance.filter(|_| is_open("plants.blade_segments")) {
         segments = [fewest(&pilot, tolerance - chosen.error); 2];
     }
-    let strip_error = segments.into_iter().min().filter(|coarser| *coarser > 0).map(|coarser| pilot.strip_error(coarser));
+    let strip_error = segments.into_iter().filter(|segments| *segments > 0).min().map(|coarser| pilot.strip_error(coarser));
     let changes = [("plants.integrator", chosen.integrator != own), ("plants.blade_segments", segments != scene.plants.blade_segments)];
     let planned = changes.into_iter().filter(|(_, is_changed)| *is_changed).map(|(field, _)| field.to_owned()).collect();
     let plan = BladePlan { integrator: chosen.integrator, segments, swing_error: chosen.error, strip_error, planned, conflict: None };

@@ -24,7 +24,7 @@ struct Kept {
 }
 
 /// Hash of everything that a plan depends on: scene, maps, stated fields, and with `fronts` the program and its times. Without them it is that of a plan which is kept
-/// as data, and holds in later versions.
+/// as data, and holds in later versions with the same fields of a scene.
 pub(super) fn key(scene: &OpenScene, fronts: Option<&Fronts>) -> String {
     let mut hash = Context::new(&SHA256);
     let OpenScene { loaded, stated } = scene;

@@ -31,12 +31,13 @@ pub(super) fn stream_row(scene: &OpenScene, plan: &Plan) -> Row {
 
 pub(super) fn blades_row(scene: &OpenScene, plan: Option<&BladePlan>) -> Row {
     let own = &scene.loaded.scene;
-    let [near, farther] = plan.map_or(own.plants.blade_segments, |plan| plan.segments);
+    let segments = plan.map_or(own.plants.blade_segments, |plan| plan.segments);
+    let [near, farther] =
+        segments.map(|segments| if segments == 0 { "as many as the quality has".to_owned() } else { segments.to_string() });
     let integrator = plan.map_or(own.plants.integrator, |plan| plan.integrator).word();
-    let method = match (own.plants.cover, near.min(farther)) {
-        (PlantCover::Shells, _) => format!("{} shells", own.shells.layers),
-        (PlantCover::Blades, 0) => format!("swing by `{integrator}`, strips of as many segments as the quality of the picture has"),
-        (PlantCover::Blades, _) => format!("swing by `{integrator}`, strips of {near} segments, {farther} farther away"),
+    let method = match own.plants.cover {
+        PlantCover::Shells => format!("{} shells", own.shells.layers),
+        PlantCover::Blades => format!("swing by `{integrator}`; segments of a strip: {near}, farther away: {farther}"),
     };
     let error = plan.map_or_else(
         || UNMEASURED.to_owned(),

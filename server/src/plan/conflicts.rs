@@ -54,8 +54,8 @@ fn of_data(plan: &WindPlan, Demand { limit_kbit_per_s, .. }: Demand) -> Option<S
     let (kbit_per_s, limit) = (plan.kbit_per_s?, limit_kbit_per_s?);
     (kbit_per_s > limit).then(|| {
         format!(
-            "`budget.kbit_per_s` = {} is less than the frames of the wind take with codes of {} m/s, {kbit_per_s:.1}: clients get fewer of them, which is not in the \
-             expected error. Fewer `wind.cells` or a longer `wind.step_secs` would need less",
+            "`budget.kbit_per_s` = {} is less than the frames of the wind take with codes of {} m/s, {kbit_per_s:.1}: clients without a replica of the grass get fewer of them, which \
+             is not in the expected error, others all of them. Fewer `wind.cells` or a longer `wind.step_secs` would need less",
             limit as f32, plan.wind_error_m_per_s
         )
     })

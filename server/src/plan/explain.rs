@@ -26,7 +26,7 @@ pub(super) fn explain_plan(scene: &OpenScene, plan: &Plan, used: &FrontsInUse) -
         is_planned: is_demanded(own),
         rows: rows(scene, plan),
         left_out: left_out(own),
-        not_planned: not_planned(own),
+        not_planned: not_planned(own, plan),
         sources: sources(plan, used),
         conflicts: plan.conflicts.clone(),
         demands: is_demanded(own).then(|| demands(own, plan)),
@@ -164,11 +164,15 @@ fn left_out(scene: &Scene) -> Vec<String> {
 }
 
 /// Settings that no plan chooses, and demands that no plan looks at.
-fn not_planned(scene: &Scene) -> Vec<String> {
+fn not_planned(scene: &Scene, plan: &Plan) -> Vec<String> {
     let demands = [
         (
             !scene.accuracy.blades.is_empty() && scene.plants.cover != PlantCover::Blades,
             "`accuracy.blades`: with `plants.cover = \"shells\"` there are no single blades",
+        ),
+        (
+            !scene.accuracy.blades.is_empty() && plan.blades.as_ref().is_some_and(|blades| blades.segments.contains(&0)),
+            "`accuracy.blades` for strips whose stated `plants.blade_segments` is 0: the quality of the picture decides",
         ),
         (scene.accuracy.picture > 0.0, "`accuracy.picture` on other cards and sizes: its errors are those of ten views of built-in scenes"),
     ];

@@ -30,7 +30,7 @@ pub use wind::{Measured, WindPlan};
 use crate::scenes::{Explanation, LoadedScene, OpenScene};
 use blade_pilot::Winds;
 use fronts::{Fronts, FrontsInUse};
-use prairie_core::scene::{Accuracy, Budget, Scene, parse};
+use prairie_core::scene::{Accuracy, Budget, PlantCover, Scene, parse};
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::Path;
@@ -68,7 +68,7 @@ impl Plan {
             conflict: None,
         };
         let wind = Err(format!("`prairie explain {}` measures it", scene.loaded.name));
-        Self { wind, bend, blades: None, picture: None, conflicts: Vec::new() }
+        Self { wind, bend, blades: None, picture: Some(picture::plan(&scene.loaded.scene, &[], None)), conflicts: Vec::new() }
     }
 }
 
@@ -95,7 +95,11 @@ impl OpenScene {
         let scene = &self.loaded.scene;
         let is_candidate = |wind: &WindPlan| settings::candidates(scene, &self.stated, settings::FINEST).contains(&wind.chosen.settings);
         let resolved = self.clone().resolved(plan).scene;
-        let is_allowed = plan.wind.as_ref().map_or(true, is_candidate)
+        let has_parts =
+            (scene.accuracy.blades.is_empty() || plan.blades.is_some() || plan.wind.is_err() || scene.plants.cover != PlantCover::Blades)
+                && (scene.accuracy.picture == 0.0 || plan.picture.is_some());
+        let is_allowed = has_parts
+            && plan.wind.as_ref().map_or(true, is_candidate)
             && parse(&resolved.to_toml()).is_ok()
             && crate::world::check(&resolved).is_empty();
         if !is_allowed {
@@ -113,12 +117,16 @@ impl OpenScene {
         let half_tick_ms = tolerances.wind.map(|_| f64::from(500.0 / scene.tick_hz));
         let demand = Demand { tolerance: tolerances.wind, limit_ms: limit_ms.or(half_tick_ms), limit_kbit_per_s };
         let wind = wind::plan(scene, (height, cover), &self.stated, demand, fronts, progress).map_err(|error| error.to_string());
-        let (wind, winds) = wind.map_or_else(|reason| (Err(reason), Winds::default()), |(plan, winds)| (Ok(plan), winds));
+        let (wind, winds) = wind.map_or_else(|reason| (Err(reason), None), |(plan, winds)| (Ok(plan), Some(winds)));
         progress.start("the drives through the grass");
         let bend = bend::plan(&self.loaded, &self.stated, tolerances.bend_deg, fronts);
-        let blades = blades::plan(scene, &self.stated, tolerances.blades, &winds, fronts);
+        let blades = winds.as_ref().and_then(|winds| blades::plan(scene, &self.stated, tolerances.blades, winds, fronts));
         let picture = picture::plan(scene, &self.stated, tolerances.picture);
-        let others = [bend.conflict.clone(), blades.as_ref().and_then(|plan| plan.conflict.clone()), picture.conflict.clone()];
+        let unmeasured = (winds.is_none() && tolerances.blades.is_some()).then(|| {
+            "`accuracy.blades` is not planned, since the wind in which they swing is not measured: the accuracy gives way".to_owned()
+        });
+        let of_blades = blades.as_ref().map_or(unmeasured, |plan| plan.conflict.clone());
+        let others = [bend.conflict.clone(), of_blades, picture.conflict.clone()];
         let conflicts = wind.iter().flat_map(|plan| conflicts::of_wind(plan, demand)).chain(others.into_iter().flatten()).collect();
         Plan { wind, bend, blades, picture: Some(picture), conflicts }
     }

@@ -148,9 +148,19 @@ pub(super) fn plan(
         coded.stream.wind_error_m_per_s = ((1e4 * code_m_per_s).floor() / 1e4) as f32;
     }
     let own_error = pilot.error(scene);
-    let plan = Search::new(&coded, &pilot, stated, fronts, progress).plan(demand);
     let may_coarsen = !stated.iter().any(|path| path == "stream.wind_error_m_per_s");
-    let plan = with_data(plan, &coded, &pilot, demand.limit_kbit_per_s.filter(|_| may_coarsen));
+    let limit_kbit_per_s = demand.limit_kbit_per_s.filter(|_| may_coarsen);
+    let first = Search::new(&coded, &pilot, stated, fronts, progress).plan(demand);
+    let mut plan = with_data(first, &coded, &pilot, limit_kbit_per_s);
+    // Others may hold the tolerance with the coarser codes.
+    if let (Some(finer), Some(tolerance)) = (plan.error_of_finer_codes, demand.tolerance.filter(|tolerance| plan.chosen.error > *tolerance))
+    {
+        coded.stream.wind_error_m_per_s = plan.wind_error_m_per_s;
+        let again = with_data(Search::new(&coded, &pilot, stated, fronts, progress).plan(demand), &coded, &pilot, limit_kbit_per_s);
+        if again.chosen.error <= tolerance {
+            plan = WindPlan { error_of_finer_codes: Some(finer), ..again };
+        }
+    }
     let winds = Winds { dt_secs: scene.dt_secs(), of_places: pilot.winds_of_places(PLACES) };
     Ok((WindPlan { own: Measured { error: own_error, ..plan.own }, ..plan }, winds))
 }
@@ -158,13 +168,13 @@ pub(super) fn plan(
 /// The plan with the data of its frames, and with codes that are as much coarser as a limit of the data (kbit/s) needs and the scene allows.
 fn with_data(mut plan: WindPlan, coded: &Scene, pilot: &WindPilot<'_>, limit_kbit_per_s: Option<f64>) -> WindPlan {
     let mut scene = plan.chosen.settings.applied_to(coded);
-    let mut kbit_per_s = pilot.kbit_per_s(&scene);
-    let planned_m_per_s = plan.wind_error_m_per_s;
-    let coarsest_m_per_s = CODE_M_PER_S[1] as f32;
+    let Some(frames) = pilot.frames(&scene) else { return plan };
+    let mut kbit_per_s = frames.kbit_per_s(&scene.stream);
+    let (planned_m_per_s, coarsest_m_per_s) = (plan.wind_error_m_per_s, CODE_M_PER_S[1] as f32);
     while limit_kbit_per_s.is_some_and(|limit| kbit_per_s > limit) && plan.wind_error_m_per_s < coarsest_m_per_s {
         plan.wind_error_m_per_s = ((1e4 * plan.wind_error_m_per_s * CODE_RATIO).floor() / 1e4).min(coarsest_m_per_s);
         scene.stream.wind_error_m_per_s = plan.wind_error_m_per_s;
-        kbit_per_s = pilot.kbit_per_s(&scene);
+        kbit_per_s = frames.kbit_per_s(&scene.stream);
     }
     if plan.wind_error_m_per_s > planned_m_per_s {
         plan.error_of_finer_codes = Some(plan.chosen.error);

@@ -51,7 +51,7 @@ pub(crate) fn millis(ms: f64) -> String {
 
 impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let what = if self.is_planned { "planned" } else { "no [accuracy] and no [budget]: nothing is planned" };
+        let what = if self.is_planned { "planned" } else { "no tolerances and budgets of the server: nothing is planned" };
         writeln!(f, "{}: {what}", self.scene)?;
         for row in &self.rows {
             writeln!(f, "\n  {}", row.part)?;

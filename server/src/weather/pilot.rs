@@ -10,7 +10,7 @@ use super::fixed_solids::FixedSolids;
 use super::settings::settings;
 use super::{WeatherError, frame_interval, initial_air, step_interval, warm_up};
 use glam::Vec3;
-use prairie_core::scene::{Scene, WindAdvection, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime};
+use prairie_core::scene::{Scene, Stream, WindAdvection, WindDiffusion, WindMethod, WindPressure, WindTerrain, WindTiling, WindTime};
 use prairie_core::terrain::{CoverMap, HeightMap};
 use prairie_core::wind::CellGrid;
 use prairie_core::wind::turbulence::RESOLVED_CELLS;
@@ -48,6 +48,30 @@ pub(crate) struct WindPilot<'a> {
     /// Root mean square of the horizontal wind (m/s).
     pub(crate) rms_m_per_s: f64,
     max_speed_m_per_s: [f64; 3],
+}
+
+/// Frames of the wind of a run, as the stream would send them.
+pub(crate) struct Frames {
+    velocities_m_per_s: Vec<Vec<Vec3>>,
+    shape: Shape,
+    /// Time from one to the next (s).
+    secs: f64,
+    /// Whether gusts travel in them, so that each differs from the one before.
+    has_gusts: bool,
+}
+
+impl Frames {
+    /// Data with the codes of a stream (kbit/s), the first frame apart.
+    pub(crate) fn kbit_per_s(&self, stream: &Stream) -> f64 {
+        let codes = CodeSteps::from(stream);
+        let coded = |frame: &Vec<Vec3>| -> Vec<i16> {
+            (0..3).flat_map(|axis| frame.iter().map(move |velocity| codes.wind_code(velocity[axis]))).collect()
+        };
+        let all: Vec<_> = self.velocities_m_per_s.iter().map(coded).collect();
+        let bytes = all.windows(2).filter(|pair| self.has_gusts || pair[0] != pair[1]);
+        let bytes: usize = bytes.map(|pair| wind_message_bytes(codec::encode(self.shape, &pair[1], Some(&pair[0])))).sum();
+        8e-3 * bytes as f64 / (self.secs * (all.len().max(2) - 1) as f64)
+    }
 }
 
 /// The state in which all runs begin.
@@ -177,29 +201,22 @@ impl<'a> WindPilot<'a> {
         }
     }
 
-    /// Data of the wind's frames with the settings of `scene` (kbit/s), dust apart; infinite where the run fails.
-    pub(crate) fn kbit_per_s(&self, scene: &Scene) -> f64 {
+    /// The frames of the wind with the settings of `scene`, dust apart; `None` where the run fails.
+    pub(crate) fn frames(&self, scene: &Scene) -> Option<Frames> {
         let mut scene = scene.clone();
         scene.wind.dust.release_per_s = 0.0;
         let ([ticks, frame_ticks], (_, step_secs)) = (intervals(&scene), step_interval(&scene));
-        let (steps, codes) = ((self.ticks / ticks as usize).max(1), CodeSteps::from(&scene.stream));
-        let (steps_per_frame, shape) = ((frame_ticks / ticks).max(1) as usize, Shape::wind(scene.wind.cells[0] as usize, false));
-        let (mut before, mut frames, mut bytes) = (None, 0, 0);
+        let (steps, steps_per_frame) = ((self.ticks / ticks as usize).max(1), (frame_ticks / ticks).max(1) as usize);
         let land = Land { height: self.height, cover: self.cover };
-        let outcome = run::<f32>(&scene, land, &self.start, step_secs, steps, |step, velocities, _| {
-            if !(step + 1).is_multiple_of(steps_per_frame) {
-                return;
+        let mut velocities_m_per_s = Vec::new();
+        run::<f32>(&scene, land, &self.start, step_secs, steps, |step, velocities, _| {
+            if (step + 1).is_multiple_of(steps_per_frame) {
+                velocities_m_per_s.push(velocities.to_vec());
             }
-            let plane = |axis: usize| velocities.iter().map(move |velocity| codes.wind_code(velocity[axis]));
-            let now: Vec<i16> = (0..3).flat_map(plane).collect();
-            if let Some(before) = before.replace(now.clone()) {
-                frames += 1;
-                let is_sent = now != before || scene.wind.turbulence > 0.0;
-                bytes += if is_sent { wind_message_bytes(codec::encode(shape, &now, Some(&before))) } else { 0 };
-            }
-        });
-        let secs = f64::from(frames) * step_secs * steps_per_frame as f64;
-        outcome.map_or(f64::INFINITY, |()| if frames == 0 { 0.0 } else { 8e-3 * bytes as f64 / secs })
+        })
+        .ok()?;
+        let shape = Shape::wind(scene.wind.cells[0] as usize, false);
+        Some(Frames { velocities_m_per_s, shape, secs: step_secs * steps_per_frame as f64, has_gusts: scene.wind.turbulence > 0.0 })
     }
 
     /// The wind at up to `count` places, over the ticks of the reference (m/s).

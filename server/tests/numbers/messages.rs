@@ -61,9 +61,15 @@ fn existing_files_are_kept_unless_they_are_to_be_replaced() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("a.csv"), "mine").unwrap();
     let arguments = ["blades", "--seconds", "0.1", "--station", "a=30,30", "--stations", "a.csv"];
+    let overwriting = [&["blades", "--overwrite"], &arguments[1..]].concat();
+    let (status, message) = refused(&overwriting, folder.path());
+    assert_eq!(status, Some(1));
+    assert_eq!(message, "error: `a.csv` exists and is no file of stations of an earlier run, so it is not replaced; name another\n");
+    assert_eq!(fs::read_to_string(folder.path().join("a.csv")).unwrap(), "mine");
+    fs::remove_file(folder.path().join("a.csv")).unwrap();
+    assert!(prairie(&[&["run"], &arguments[..]].concat(), folder.path()).status.success());
     let (status, message) = refused(&arguments, folder.path());
     assert_eq!((status, message.as_str()), (Some(1), "error: `a.csv` exists; --overwrite replaces it\n"));
-    assert_eq!(fs::read_to_string(folder.path().join("a.csv")).unwrap(), "mine");
     assert!(prairie(&[&["run", "--overwrite"], &arguments[..]].concat(), folder.path()).status.success());
     assert!(fs::read_to_string(folder.path().join("a.csv")).unwrap().starts_with("time_s,"));
     fs::create_dir(folder.path().join("thesis")).unwrap();

@@ -39,8 +39,9 @@ pub struct Budget {
     /// Frame time that automatic quality keeps on clients (ms), at least 1; the page's address wins with `budget`. Default 0: 16.7 on a graphics card, 100 on a
     /// software renderer; allowed 0..=1000.
     pub client_ms: f32,
-    /// Mean data to each client (kbit/s), beside the limit of the server: the plan makes the codes of the wind as coarse as its frames need, and the run sends no
-    /// more, whatever moves. Default 0, no limit; allowed 0..=1000000.
+    /// Mean data to each client (kbit/s), beside the limit of the server: the plan makes the codes of the wind as coarse as its frames need, and in the run wind and
+    /// grass get no more; poses of vehicles, and the steps of clients that simulate the grass themselves, go out in any case. Default 0, no limit; allowed
+    /// 0..=1000000.
     pub kbit_per_s: f32,
 }
 
