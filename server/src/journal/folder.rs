@@ -6,6 +6,7 @@ use crate::escaped::escaped;
 use crate::file::{unique_part, write_atomically};
 use crate::scenes::LoadedScene;
 use data_encoding::HEXLOWER;
+use prairie_core::scene::{Budget, Scene};
 use ring::digest::{Context, SHA256};
 use ring::rand::{SecureRandom as _, SystemRandom};
 use std::collections::BTreeSet;

@@ -28,7 +28,6 @@ pub use settings::WindSettings;
 pub use wind::{Measured, WindPlan};
 
 use crate::scenes::{Explanation, LoadedScene, OpenScene};
-use blade_pilot::Winds;
 use fronts::{Fronts, FrontsInUse};
 use prairie_core::scene::{Accuracy, Budget, PlantCover, Scene, parse};
 use serde::{Deserialize, Serialize};
