@@ -51,6 +51,7 @@ pub(super) enum Rate {
 
 /// A row of the table.
 #[derive(Debug)]
+#[cfg_attr(not(test), allow(dead_code, reason = "tests compare the whole row with the README and with recordings"))]
 pub(super) struct Row {
     pub(super) entity: Entity,
     pub(super) path: &'static str,

@@ -20,6 +20,7 @@ impl Window {
     }
 
     /// North-western cell.
+    #[cfg(test)]
     pub(super) fn first(&self) -> [u32; 2] {
         self.first
     }
