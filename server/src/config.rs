@@ -1,6 +1,6 @@
 //! Configuration of a run.
 
-use crate::inspect::Target;
+use crate::inspect::{EntityRate, Target};
 use crate::journal::WorldFolder;
 use crate::net::{HostName, Origin, Tls};
 use crate::scenes::LoadedScene;
@@ -20,6 +20,8 @@ pub struct Config {
     pub allow_hosts: Vec<HostName>,
     /// Destination of the recording for the rerun viewer; `None` for no recording.
     pub rerun: Option<Target>,
+    /// Rates of the recording's entities that differ from the defaults. Default none.
+    pub rerun_rates: Vec<EntityRate>,
     /// Threads of the simulation; `None` for one per core.
     pub threads: Option<usize>,
     /// Snapshots per second (Hz). Default 20.
@@ -46,6 +48,7 @@ impl Config {
             allow_origins: Vec::new(),
             allow_hosts: Vec::new(),
             rerun: None,
+            rerun_rates: Vec::new(),
             threads: None,
             publish_hz: 20.0,
             pause_after: Some(Duration::from_secs(10)),

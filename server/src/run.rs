@@ -83,8 +83,8 @@ pub(crate) async fn run_with_menu(
     shutdown: impl Future<Output = ()>,
 ) -> Result<(), RunError> {
     let (scene, timing) = (&config.scene.scene, timing(&config));
-    let inspector =
-        config.rerun.as_ref().map(|target| Inspector::start(target, scene, &config.scene.height, &config.scene.cover)).transpose()?;
+    let open = |target| Inspector::start(target, &config.rerun_rates, scene, &config.scene.height, &config.scene.cover);
+    let inspector = config.rerun.as_ref().map(open).transpose()?;
     let (proofs, clients) = (Proofs::new(simulation.key()), Arc::new(Clients::starting_at(simulation.first_client())));
     let journal = simulation.journal_health().unwrap_or_default();
     let runner = Runner::start(simulation, timing)?;

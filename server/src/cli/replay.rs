@@ -7,7 +7,7 @@ use super::stop_signal::StopSignal;
 use super::world::default_folder;
 use anyhow::Context as _;
 use clap::{Args, ValueHint};
-use prairie::inspect::Target;
+use prairie::inspect::{EntityRate, Target};
 use prairie::journal::{Player, Replay, recorded};
 use prairie::net::bind;
 use prairie::scenes::LoadedScene;
@@ -44,6 +44,9 @@ pub(super) struct ReplayArguments {
     /// Record for the rerun viewer: serve it to viewers, save it to a file, or send it to a running viewer
     #[arg(long, value_name = "serve|save=FILE.rrd|connect=URL")]
     rerun: Option<Target>,
+    /// Largest rate of an entity of the recording (1/s of simulated time), 0 to 60, where 0 turns it off; may be repeated. The README lists the entities
+    #[arg(long, value_name = "PATH=HZ", requires = "rerun")]
+    rerun_rate: Vec<EntityRate>,
 }
 
 impl ReplayArguments {
@@ -69,7 +72,7 @@ impl ReplayArguments {
         let mut stop = StopSignal::install()?;
         let listener = bind(&self.addr).await.context("--addr")?;
         let address = listener.local_addr()?;
-        let config = Config { rerun: self.rerun, ..Config::new(scene) };
+        let config = Config { rerun: self.rerun, rerun_rates: self.rerun_rate, ..Config::new(scene) };
         let shutdown = async {
             announce(address, None, false);
             stop.received().await;

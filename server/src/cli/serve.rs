@@ -8,7 +8,7 @@ use super::tls::TlsArguments;
 use super::world::WorldArguments;
 use anyhow::Context as _;
 use clap::{Args, ValueEnum, ValueHint};
-use prairie::inspect::Target;
+use prairie::inspect::{EntityRate, Target};
 use prairie::net::bind;
 use prairie::scenes::SceneError;
 use prairie::{Config, Limits, scenes};
@@ -58,6 +58,9 @@ pub(super) struct Serve {
     /// Record the run for the rerun viewer: serve it to viewers, save it to a file, or send it to a running viewer
     #[arg(long, env = "PRAIRIE_RERUN", value_name = "serve|save=FILE.rrd|connect=URL")]
     rerun: Option<Target>,
+    /// Largest rate of an entity of the recording (1/s of simulated time), 0 to 60, where 0 turns it off; may be repeated. The README lists the entities
+    #[arg(long, value_name = "PATH=HZ", requires = "rerun")]
+    rerun_rate: Vec<EntityRate>,
     /// Threads of the simulation, 1 to 1024 [default: one per core]
     #[arg(long, env = "PRAIRIE_THREADS", value_name = "N", value_parser = whole(1_u16..=1024))]
     threads: Option<u16>,
@@ -183,6 +186,7 @@ impl Serve {
             allow_origins: self.tls.allow_origin,
             allow_hosts: self.tls.allow_host,
             rerun: self.rerun,
+            rerun_rates: self.rerun_rate,
             threads: self.threads.map(usize::from),
             publish_hz: f32::from(self.publish_hz),
             logs_page_errors: self.report,

@@ -1,17 +1,19 @@
-//! The initial layout of the viewer: terrain with wind arrows, the map of bending angles beside it, plots below.
+//! The initial layout of the viewer: the [tabs](super::tabs::TABS).
 
 use super::connect::APPLICATION;
-use super::plots::PLOTS;
+use super::entities::Entity;
+use super::plots::{PLOTS, Plot};
+use super::tabs::{Slice, TABS, Tab, View, plot};
 use glam::Vec3;
 use prairie_core::scene::Scene;
 use prairie_core::terrain::HeightMap;
 use rerun::blueprint::components::{BackgroundKind, ContainerKind, Corner2D, IncludedContent, PanelState, PlayState, RootContainer};
 use rerun::external::re_log_types::BlueprintActivationCommand;
 use rerun::external::re_sdk_types::blueprint::archetypes::{
-    Background, ContainerBlueprint, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend, TimePanelBlueprint, ViewBlueprint, ViewContents,
-    ViewportBlueprint,
+    Background, ContainerBlueprint, EyeControls3D, LineGrid3D, PanelBlueprint, PlotLegend, TensorSliceSelection, TimePanelBlueprint,
+    ViewBlueprint, ViewContents, ViewportBlueprint,
 };
-use rerun::external::re_sdk_types::datatypes::Uuid;
+use rerun::external::re_sdk_types::datatypes::{TensorDimensionIndexSelection, Uuid};
 use rerun::log::LogMsg;
 use rerun::{AsComponents, RecordingStream, RecordingStreamBuilder, RecordingStreamResult};
 
@@ -33,32 +35,9 @@ impl InitialLayout {
 pub(super) fn initial_layout(scene: &Scene, heights: &HeightMap) -> RecordingStreamResult<InitialLayout> {
     let (stream, storage) = RecordingStreamBuilder::new(APPLICATION).blueprint().memory()?;
     stream.set_time_sequence("blueprint", 0);
-    let mut layout = Layout { stream, next: 1 };
-
-    let terrain = layout.view(
-        "3D",
-        "Wind and grass",
-        "world",
-        &["$origin/**"],
-        &[
-            ("EyeControls3D", &eye(scene, heights)),
-            ("Background", &Background::new(BackgroundKind::SolidColor).with_color([27, 34, 46])),
-            ("LineGrid3D", &LineGrid3D::new().with_visible(false)),
-        ],
-    )?;
-    let map = layout.view("2D", "Bending angle, from above", "map", &["$origin/**"], &[])?;
-    let mut plot_views = Vec::new();
-    for plot in PLOTS {
-        let contents: Vec<String> = plot.curves.iter().map(|curve| format!("+ /{}", plot.entity(curve))).collect();
-        let contents: Vec<&str> = contents.iter().map(String::as_str).collect();
-        let legend = PlotLegend::new().with_corner(Corner2D::LeftTop).with_visible(plot.curves.len() > 1);
-        plot_views.push(layout.view("TimeSeries", plot.title, "metrics", &contents, &[("PlotLegend", &legend)])?);
-    }
-
-    plot_views.push(layout.view("TextLog", "Decisions about the detail", "decisions", &["$origin/**"], &[])?);
-    let (_, top) = layout.container(ContainerKind::Horizontal, [terrain, map], |top| top.with_col_shares([1.9, 1.0]))?;
-    let (_, bottom) = layout.container(ContainerKind::Grid, plot_views, |grid| grid.with_grid_columns(5))?;
-    let (root, _) = layout.container(ContainerKind::Vertical, [top, bottom], |root| root.with_row_shares([2.2, 1.0]))?;
+    let mut layout = Layout { stream, next: 1, eye: eye(scene, heights) };
+    let tabs = TABS.iter().map(|tab| layout.tab(tab)).collect::<RecordingStreamResult<Vec<_>>>()?;
+    let (root, _) = layout.container(ContainerKind::Tabs, tabs, |root| root)?;
 
     let viewport = ViewportBlueprint::new().with_root_container(root).with_auto_layout(false).with_auto_views(false);
     layout.stream.log("viewport", &viewport)?;
@@ -85,19 +64,70 @@ fn eye(scene: &Scene, heights: &HeightMap) -> EyeControls3D {
 struct Layout {
     stream: RecordingStream,
     next: u128,
+    /// Camera of the views in space.
+    eye: EyeControls3D,
 }
 
+/// Number of columns of a tab's grid.
+const COLUMNS: u32 = 5;
+
 impl Layout {
+    fn tab(&mut self, tab: &Tab) -> RecordingStreamResult<IncludedContent> {
+        let (mut large, mut small) = (Vec::new(), Vec::new());
+        for (views, contents) in [(tab.large, &mut large), (tab.small, &mut small)] {
+            for view in views {
+                contents.extend(self.views(view)?);
+            }
+        }
+        let columns = COLUMNS.min(small.len() as u32);
+        let (_, top) = self.container(ContainerKind::Horizontal, large, |top| top)?;
+        let (_, bottom) = self.container(ContainerKind::Grid, small, |grid| grid.with_grid_columns(columns))?;
+        let named = |tab_of: ContainerBlueprint| tab_of.with_display_name(tab.name).with_row_shares([1.6, 1.0]);
+        Ok(self.container(ContainerKind::Vertical, [top, bottom], named)?.1)
+    }
+
+    /// The view, or the views of all plots.
+    fn views(&mut self, view: &View) -> RecordingStreamResult<Vec<IncludedContent>> {
+        let one = match view {
+            View::Space { title, entities } => {
+                let eye = self.eye.clone();
+                let background = Background::new(BackgroundKind::SolidColor).with_color([27, 34, 46]);
+                let grid = LineGrid3D::new().with_visible(false);
+                let properties: [(&str, &dyn AsComponents); 3] =
+                    [("EyeControls3D", &eye), ("Background", &background), ("LineGrid3D", &grid)];
+                self.view("3D", title, Entity::World.path(), &contents(entities), &properties)
+            }
+            // The origin is above the classes of segmentation images.
+            View::Image { title, entities } => {
+                let origin = entities[0].path().split('/').next().unwrap_or_default();
+                self.view("2D", title, origin, &contents(entities), &[])
+            }
+            View::Slice { title, entity, slice } => {
+                self.view("Tensor", title, entity.path(), &contents(&[*entity]), &[("TensorSliceSelection", &selection(slice))])
+            }
+            View::Text { title, entity } => self.view("TextLog", title, entity.path(), &contents(&[*entity]), &[]),
+            View::Plot(folder) => return plot(folder).into_iter().map(|plot| self.plot(plot)).collect(),
+            View::Plots => return PLOTS.iter().map(|plot| self.plot(plot)).collect(),
+        };
+        Ok(vec![one?])
+    }
+
+    fn plot(&mut self, plot: &Plot) -> RecordingStreamResult<IncludedContent> {
+        let curves: Vec<_> = plot.curves.iter().map(|curve| format!("+ /{}", plot.entity(curve))).collect();
+        let legend = PlotLegend::new().with_corner(Corner2D::LeftTop).with_visible(plot.curves.len() > 1);
+        self.view("TimeSeries", plot.title, Entity::Metrics.path(), &curves, &[("PlotLegend", &legend)])
+    }
+
     fn view(
         &mut self,
         class: &str,
         name: &str,
         origin: &str,
-        contents: &[&str],
+        contents: &[String],
         properties: &[(&str, &dyn AsComponents)],
     ) -> RecordingStreamResult<IncludedContent> {
         let (_, path) = self.path("view");
-        self.stream.log(format!("{path}/ViewContents"), &ViewContents::new(contents.iter().copied()))?;
+        self.stream.log(format!("{path}/ViewContents"), &ViewContents::new(contents.iter().map(String::as_str)))?;
         self.stream.log(path.as_str(), &ViewBlueprint::new(class).with_display_name(name).with_space_origin(origin))?;
         for (property, archetype) in properties {
             self.stream.log(format!("{path}/{property}"), *archetype)?;
@@ -124,4 +154,15 @@ impl Layout {
         let dashed = [&hex[..8], &hex[8..12], &hex[12..16], &hex[16..20], &hex[20..]].join("-");
         (Uuid { bytes: id.to_be_bytes() }, format!("{kind}/{dashed}"))
     }
+}
+
+/// The expression of a view's contents.
+fn contents(entities: &[Entity]) -> Vec<String> {
+    entities.iter().map(|entity| format!("+ /{}", entity.path())).collect()
+}
+
+fn selection(slice: &Slice) -> TensorSliceSelection {
+    let [width, height] = slice.across;
+    let indices = slice.at.iter().map(|&(dimension, index)| TensorDimensionIndexSelection { dimension, index });
+    TensorSliceSelection::new().with_width(width).with_height(height).with_indices(indices)
 }

@@ -1,6 +1,7 @@
 //! The recorder of a run: a bounded queue in front of a logger thread.
 
 use super::error::InspectError;
+use super::rates::{EntityRate, frame_secs};
 #[cfg(feature = "rerun")]
 use super::recording::Recording;
 use super::sink::{Frame, Sink};
@@ -12,7 +13,7 @@ use prairie_core::terrain::{CoverMap, HeightMap};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, channel, sync_channel};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// Capacity of the queue in front of the logger (frames); when it is full, frames are dropped.
 const QUEUE_LIMIT: usize = 4;
@@ -51,18 +52,26 @@ struct Intake {
 }
 
 impl Inspector {
-    /// Opens the target, logs the static data (terrain, colours, layout) and starts the logger thread.
+    /// Opens the target, logs the static data (terrain, colours, layout) and starts the logger thread. Entities have their default rates, except for those
+    /// in `rates`; of several for one entity the last counts.
     ///
     /// # Errors
     /// [`InspectError`] when the address is in use, the file cannot be created, or no viewer listens.
-    pub fn start(target: &Target, scene: &Scene, heights: &HeightMap, cover: &CoverMap) -> Result<Self, InspectError> {
+    pub fn start(
+        target: &Target,
+        rates: &[EntityRate],
+        scene: &Scene,
+        heights: &HeightMap,
+        cover: &CoverMap,
+    ) -> Result<Self, InspectError> {
         let (period_secs, finish_limit) = match target {
             Target::Save(_) => (FILE_PERIOD_SECS, FILE_FINISH),
             Target::Serve(_) | Target::Connect(_) => (LIVE_PERIOD_SECS, LIVE_FINISH),
         };
+        let period_secs = frame_secs(period_secs, rates);
         #[cfg(feature = "rerun")]
         {
-            let recording = Recording::open(target, scene, heights, cover)?;
+            let recording = Recording::open(target, rates, scene, heights, cover)?;
             Ok(Self::with_sink(recording.address(), recording, period_secs, finish_limit))
         }
         #[cfg(not(feature = "rerun"))]
@@ -108,7 +117,8 @@ impl Inspector {
         intake.last_secs = Some(snapshot.time_secs);
         let Intake { clients, sent_bytes_per_s, .. } = *intake;
         let stats = RecordingStats { clients, sent_bytes_per_s, dropped_log_frames: self.dropped() };
-        let frame = Frame { snapshot: snapshot.clone(), stats };
+        let wall_secs = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |since| since.as_secs_f64());
+        let frame = Frame { snapshot: snapshot.clone(), stats, wall_secs };
         if intake.queue.as_ref().is_none_or(|queue| queue.try_send(frame).is_err()) {
             self.dropped.fetch_add(1, Ordering::Relaxed);
         }

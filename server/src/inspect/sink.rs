@@ -8,6 +8,8 @@ use crate::snapshot::Snapshot;
 pub(super) struct Frame {
     pub(super) snapshot: Snapshot,
     pub(super) stats: RecordingStats,
+    /// Time of the snapshot on the machine's clock (s since 1970).
+    pub(super) wall_secs: f64,
 }
 
 /// Destination of a logger thread. Calls may block.

@@ -60,5 +60,5 @@ fn stations_off_the_land_and_with_the_same_name_are_refused() {
     assert_eq!(create(&["a=1,2", "a=2,3"]).to_string(), "two stations are called `a`; each needs a name of its own");
     assert!(std::fs::read_dir(folder.path()).unwrap().next().is_none(), "nothing is written");
     std::fs::write(folder.path().join("a.csv"), "mine").unwrap();
-    assert!(matches!(create(&["a=1,2"]), OutputError::Exists { .. }));
+    assert!(matches!(create(&["a=1,2"]), OutputError::NotOurs { .. }));
 }
