@@ -3,7 +3,7 @@
 use super::announce::announce;
 use super::log::LogFormat;
 use super::number::whole;
-use super::stop_signal::StopSignal;
+use super::stop_signal::{StopSignal, survive_full_files};
 use super::tls::TlsArguments;
 use super::world::WorldArguments;
 use anyhow::Context as _;
@@ -200,18 +200,6 @@ impl Serve {
             stop.received().await;
         };
         Ok(prairie::run_and_reload(world, config, listener, shutdown).await?)
-    }
-}
-
-/// Lets a write beyond the allowed size of a file fail instead of ending the program.
-pub(super) fn survive_full_files() {
-    #[cfg(target_os = "linux")]
-    {
-        use tokio::signal::unix::{SignalKind, signal};
-        /// The number of SIGXFSZ on most machines.
-        const SIGXFSZ: i32 = 25;
-        // The handler stays when the stream of signals is dropped. Where it cannot be installed, such a write ends the program as before.
-        drop(signal(SignalKind::from_raw(SIGXFSZ)));
     }
 }
 

@@ -1,6 +1,5 @@
-//! Signals that stop the server: Ctrl-C, and on Unix SIGTERM and SIGHUP.
+//! Signals that stop the server: Ctrl-C, and on Unix SIGTERM and SIGHUP; and one that does not.
 
-use super::serve::survive_full_files;
 use std::io;
 use std::sync::{
     Arc,
@@ -24,6 +23,18 @@ pub(super) fn stop_flag() -> io::Result<Arc<AtomicBool>> {
         set.store(true, Relaxed);
     })?;
     Ok(flag)
+}
+
+/// Lets a write beyond the allowed size of a file fail instead of ending the program.
+pub(super) fn survive_full_files() {
+    #[cfg(target_os = "linux")]
+    {
+        use tokio::signal::unix::{SignalKind, signal};
+        /// The number of SIGXFSZ on most machines.
+        const SIGXFSZ: i32 = 25;
+        // The handler stays when the stream of signals is dropped. Where it cannot be installed, such a write ends the program as before.
+        drop(signal(SignalKind::from_raw(SIGXFSZ)));
+    }
 }
 
 /// Installed signal handlers.

@@ -3,7 +3,6 @@
 //! The reference takes [`REFINEMENT`] exact steps in a step of a picture. The error of the swing is the root mean square distance of the tips over a second, that of
 //! a strip the largest distance between it and the curve, for the bends of that second, the largest bend among them.
 
-use super::blades::PICTURE_SECS;
 use prairie_core::plant::blade::backbone::{backbone_m, drawn_out_m};
 use prairie_core::plant::blade::deflection::deflection;
 use prairie_core::plant::blade::{Blade, LINKS, Leans, Sway, advance};
@@ -11,6 +10,8 @@ use prairie_core::scene::{BladeIntegrator, Scene};
 use std::f32::consts::TAU;
 use std::time::Instant;
 
+/// Duration of a picture (s), in which blades take one step, or as many as their integrator needs.
+pub(super) const PICTURE_SECS: f32 = 1.0 / 60.0;
 /// Pictures of a run, which lasts a second.
 const PICTURES: usize = 60;
 /// Steps of the reference in a picture.

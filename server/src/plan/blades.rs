@@ -2,7 +2,7 @@
 //!
 //! [Pilot runs](super::blade_pilot) measure both errors relative to the length of a blade. They count as a sum: a strip is off from its curve wherever the tip is.
 
-use super::blade_pilot::{BladePilot, Winds};
+use super::blade_pilot::{BladePilot, PICTURE_SECS, Winds};
 use super::fronts::Fronts;
 use prairie_core::scene::{BLADE_STEPS_LIMIT, BladeIntegrator, PlantCover, Scene};
 use serde::{Deserialize, Serialize};
@@ -11,8 +11,6 @@ use serde::{Deserialize, Serialize};
 const SWING_SHARE: f64 = 0.7;
 /// Allowed segments of a strip.
 pub(super) const SEGMENTS: std::ops::RangeInclusive<u32> = 1..=12;
-/// Duration of a picture (s), in which blades take one step, or as many as their integrator needs.
-pub(super) const PICTURE_SECS: f32 = 1.0 / 60.0;
 
 /// Integrator and segments of blades, with their errors.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

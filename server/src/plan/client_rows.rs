@@ -1,15 +1,16 @@
 //! Explanation of what the clients of a scene get and draw: data, blades, picture.
 
 use super::blades::BladePlan;
-use super::explain::stated;
-use super::{PicturePlan, Plan};
+use super::picture::PicturePlan;
+use super::wind::WindPlan;
 use crate::scenes::{ExplanationRow as Row, OpenScene};
 use prairie_core::scene::PlantCover;
 
 const UNMEASURED: &str = "not measured for a scene";
 
-pub(super) fn stream_row(scene: &OpenScene, plan: &Plan) -> Row {
-    let (own, wind) = (&scene.loaded.scene, plan.wind.as_ref().ok());
+/// The row of the stream, with the plan of the wind and the error of the codes of θ (degrees).
+pub(super) fn stream_row(scene: &OpenScene, wind: Option<&WindPlan>, theta_error_deg: f32) -> Row {
+    let own = &scene.loaded.scene;
     let wind_m_per_s = wind.map_or(own.stream.wind_error_m_per_s, |wind| wind.wind_error_m_per_s);
     let limit = match own.budget.limits()[2] {
         Some(kbit_per_s) => format!("; at most {kbit_per_s} kbit/s to each client"),
@@ -18,13 +19,13 @@ pub(super) fn stream_row(scene: &OpenScene, plan: &Plan) -> Row {
     let data = wind.and_then(|wind| wind.kbit_per_s);
     Row {
         part: "data to each client".to_owned(),
-        method: format!("codes of the wind to {wind_m_per_s} m/s, of the bend to {} deg{limit}", plan.bend.theta_error_deg),
+        method: format!("codes of the wind to {wind_m_per_s} m/s, of the bend to {theta_error_deg} deg{limit}"),
         error: data.map_or_else(
             || UNMEASURED.to_owned(),
             |kbit_per_s| format!("that of the codes is in the errors above; frames of the wind take {kbit_per_s:.1} kbit/s"),
         ),
         server_ms_per_tick: None,
-        stated: stated(scene, &["stream"]),
+        stated: scene.stated_in(&["stream"]),
         planned: Vec::new(),
     }
 }
@@ -48,7 +49,7 @@ pub(super) fn blades_row(scene: &OpenScene, plan: Option<&BladePlan>) -> Row {
         },
     );
     let planned = plan.map_or_else(Vec::new, |plan| plan.planned.clone());
-    Row { part: "blades".to_owned(), method, error, server_ms_per_tick: None, stated: stated(scene, &["plants", "shells"]), planned }
+    Row { part: "blades".to_owned(), method, error, server_ms_per_tick: None, stated: scene.stated_in(&["plants", "shells"]), planned }
 }
 
 pub(super) fn picture_row(scene: &OpenScene, plan: &PicturePlan) -> Row {

@@ -37,7 +37,7 @@ fn rows(scene: &OpenScene, plan: &Plan) -> Vec<Row> {
     let parts = [
         Some(wind_row(scene, plan)),
         Some(bend_row(scene, plan)),
-        Some(stream_row(scene, plan)),
+        Some(stream_row(scene, plan.wind.as_ref().ok(), plan.bend.theta_error_deg)),
         Some(blades_row(scene, plan.blades.as_ref())),
         plan.picture.as_ref().map(|picture| picture_row(scene, picture)),
         Some(objects_row(scene)),
@@ -62,14 +62,8 @@ fn demands(own: &Scene, plan: &Plan) -> Demands {
     }
 }
 
-/// The stated fields of a section.
-pub(super) fn stated(scene: &OpenScene, sections: &[&str]) -> Vec<String> {
-    let is_in = |path: &&String| sections.iter().any(|section| path.starts_with(&format!("{section}.")));
-    scene.stated.iter().filter(is_in).cloned().collect()
-}
-
 fn wind_row(scene: &OpenScene, plan: &Plan) -> Row {
-    let (own, stated) = (&scene.loaded.scene, stated(scene, &["wind"]));
+    let (own, stated) = (&scene.loaded.scene, scene.stated_in(&["wind"]));
     let part = "wind that the grass feels".to_owned();
     let Ok(wind) = &plan.wind else {
         let method = super::WindSettings::of(own).words(own.wind.method);
@@ -118,7 +112,7 @@ fn bend_row(scene: &OpenScene, plan: &Plan) -> Row {
             }
         },
         server_ms_per_tick: bend.ms_per_tick,
-        stated: stated(scene, &["bend", "grass", "stream"]),
+        stated: scene.stated_in(&["bend", "grass", "stream"]),
         planned: bend.planned.clone(),
     }
 }
@@ -132,7 +126,7 @@ fn objects_row(scene: &OpenScene) -> Row {
         method,
         error: "not measured for a scene".to_owned(),
         server_ms_per_tick: None,
-        stated: stated(scene, &["objects"]),
+        stated: scene.stated_in(&["objects"]),
         planned: Vec::new(),
     }
 }

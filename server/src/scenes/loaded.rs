@@ -54,3 +54,11 @@ pub struct OpenScene {
     /// Paths of the stated fields.
     pub stated: Vec<String>,
 }
+
+impl OpenScene {
+    /// The stated fields of sections.
+    pub(crate) fn stated_in(&self, sections: &[&str]) -> Vec<String> {
+        let is_in = |path: &&String| sections.iter().any(|section| path.starts_with(&format!("{section}.")));
+        self.stated.iter().filter(is_in).cloned().collect()
+    }
+}
