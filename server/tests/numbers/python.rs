@@ -58,7 +58,7 @@ fn xarray_opens_a_store_without_a_warning_and_finds_every_bit() {
 }
 
 #[test]
-#[ignore = "needs VTK, 150 MB: target/python/bin/pip install -r server/tests/numbers/requirements-long.txt"]
+#[ignore = "needs VTK, 150 MB: target/python/bin/pip install -r server/tests/numbers/requirements-long.txt; cargo nextest run --release -p prairie --features zarr --run-ignored only vtk_reads_every_bit"]
 fn vtk_reads_every_bit() {
     use crate::bytes;
     let folder = tempfile::tempdir().unwrap();
